@@ -1,0 +1,1 @@
+"""The `cellwright` command: parse, call, print, exit code."""

@@ -1,0 +1,1 @@
+"""Contracts that every other package builds on: errors, outcomes, skills, ports, clocks."""

@@ -1,0 +1,58 @@
+"""Things by name: a duplicate is an error, an unknown name is answered with the closest match."""
+
+import difflib
+from collections.abc import Iterator
+from typing import Generic, TypeVar
+
+from executive.core.errors import InputError
+
+T = TypeVar("T")
+
+
+def closest(name: str, known: list[str]) -> str:
+    """Return `did you mean 'x'? (known: ...)` for a message about an unknown name."""
+    match = difflib.get_close_matches(name, known, n=1, cutoff=0.5)
+    hint = f"did you mean {match[0]!r}? " if match else ""
+    return f"{hint}(known: {', '.join(sorted(known)) or 'none'})"
+
+
+class Registry(Generic[T]):
+    """A named set of things of one kind."""
+
+    def __init__(self, kind: str) -> None:
+        """Start empty; `kind` names the things in messages, e.g. `skill`."""
+        self.kind = kind
+        self._things: dict[str, T] = {}
+
+    def add(self, name: str, thing: T) -> T:
+        """Add a thing under a name that is not taken.
+
+        Raises:
+            ValueError: The name is taken by another thing.
+        """
+        if name in self._things:
+            raise ValueError(f"{self.kind} {name!r} is registered twice")
+        self._things[name] = thing
+        return thing
+
+    def get(self, name: str) -> T:
+        """Return the thing of that name.
+
+        Raises:
+            InputError: There is none.
+        """
+        try:
+            return self._things[name]
+        except KeyError:
+            raise InputError(
+                f"unknown {self.kind} {name!r}; {closest(name, list(self._things))}"
+            ) from None
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._things
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(sorted(self._things))
+
+    def __len__(self) -> int:
+        return len(self._things)

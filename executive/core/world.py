@@ -1,0 +1,58 @@
+"""What a runner needs of a cell, simulated or real: devices, time, streams, a way to stop."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Protocol, runtime_checkable
+
+from executive.core.clock import Clock
+
+
+@dataclass(frozen=True, slots=True)
+class StreamMessage:
+    """One message of a recorded stream.
+
+    Attributes:
+        topic: Channel name such as `/joint_states`.
+        schema: Name of the message's schema; docs/recording.md lists them.
+        time_s: Time on the cell's clock [s].
+        data: UTF-8 JSON.
+    """
+
+    topic: str
+    schema: str
+    time_s: float
+    data: bytes
+
+
+@runtime_checkable
+class Cell(Protocol):
+    """A cell that missions run on."""
+
+    @property
+    def clock(self) -> Clock:
+        """The clock that ticks and motions share."""
+        ...
+
+    @property
+    def devices(self) -> Mapping[str, object]:
+        """Devices and services that skills bind to, by name."""
+        ...
+
+    def drain_streams(self) -> Iterable[StreamMessage]:
+        """Return what has happened since the last call: joint states, scene."""
+        ...
+
+    def stop(self) -> None:
+        """Bring every moving thing to rest, in order; safe to call at any time."""
+        ...
+
+    def close(self) -> None:
+        """Release devices; called once, last."""
+        ...
+
+    def truth(self) -> object | None:
+        """Return a dataclass that scores the end state, or None on a real cell.
+
+        Only the command line calls it, once, after the mission has ended.
+        """
+        ...

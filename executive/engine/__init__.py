@@ -1,0 +1,1 @@
+"""From YAML to a ticking, recorded tree: documents, builder, runner, recorder."""

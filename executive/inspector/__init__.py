@@ -1,0 +1,1 @@
+"""Views of a run; they read recordings and nothing else."""

@@ -1,0 +1,1 @@
+"""Images to distributions; it knows no robot and no simulator."""

@@ -1,0 +1,84 @@
+"""The steps of cable perception as interfaces; each has more than one implementation."""
+
+from collections.abc import Sequence
+from typing import Protocol, runtime_checkable
+
+from perception.cable.types import (
+    CableScene,
+    Crossing,
+    Endpoint,
+    Knot,
+    Points,
+    Trace,
+)
+from perception.camera import GreyImage
+
+
+@runtime_checkable
+class Tracer(Protocol):
+    """Follows one cable from a start."""
+
+    def trace(
+        self,
+        image: GreyImage,
+        start_px: Points,
+        endpoints: Sequence[Endpoint],
+    ) -> Trace | None:
+        """Follow the cable that starts at `start_px`.
+
+        Args:
+            image: Grey image.
+            start_px: First points, in order, shape (N, 2) with N >= 1; one point is an end
+                of the cable, more points also give its direction.
+            endpoints: Ends where a trace may finish.
+
+        Returns:
+            The trace, or None where there is no cable at the start.
+        """
+        ...
+
+
+@runtime_checkable
+class CrossingClassifier(Protocol):
+    """Says which strand lies on top where traces meet."""
+
+    def classify(self, image: GreyImage, traces: Sequence[Trace]) -> tuple[Crossing, ...]:
+        """Return every crossing of the traces, with its over/under belief."""
+        ...
+
+
+@runtime_checkable
+class CableVision(Protocol):
+    """The whole of cable perception as the skills of a tree use it, step by step."""
+
+    def endpoints(self, image: GreyImage) -> tuple[Endpoint, ...]:
+        """Find the ends of cables."""
+        ...
+
+    def start_points(self, image: GreyImage, endpoint: Endpoint) -> Points | None:
+        """Follow the cable for about 96 px from an end, shape (N, 2); None when unclear."""
+        ...
+
+    def trace(
+        self, image: GreyImage, start_px: Points, endpoints: Sequence[Endpoint]
+    ) -> Trace | None:
+        """Follow one cable; see `Tracer.trace`."""
+        ...
+
+    def crossings(self, image: GreyImage, traces: Sequence[Trace]) -> tuple[Crossing, ...]:
+        """Classify all crossings; see `CrossingClassifier.classify`."""
+        ...
+
+    def knots(
+        self, image: GreyImage, traces: Sequence[Trace], crossings: Sequence[Crossing]
+    ) -> tuple[Knot, ...]:
+        """Find knots and where to hold them."""
+        ...
+
+    def knotted_probability(self, traces: Sequence[Trace], crossings: Sequence[Crossing]) -> float:
+        """Carry the beliefs of traces and crossings to P(knotted)."""
+        ...
+
+    def scene(self, image: GreyImage, start_px: Points | None = None) -> CableScene:
+        """Do all steps on one image, from a given start or from the ends that are seen."""
+        ...

@@ -1,0 +1,117 @@
+"""What is believed about cables in one image.
+
+Image points are (x, y) in pixels. Arc positions are fractions of a trace's length in [0, 1].
+"""
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+Points = NDArray[np.float64]
+
+
+class TraceEnd(StrEnum):
+    """Why a trace ended."""
+
+    ENDPOINT = "endpoint"
+    EDGE = "edge"
+    RETRACE = "retrace"
+    LOST = "lost"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Endpoint:
+    """One end of a cable.
+
+    Attributes:
+        position_px: Where the cable itself ends (or its connector starts), shape (2,).
+        direction: Unit vector from the end into the cable, shape (2,).
+        probability: Belief that this is an end of a cable.
+    """
+
+    position_px: Points
+    direction: Points
+    probability: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Trace:
+    """The path of one cable.
+
+    Attributes:
+        points_px: Ordered centre line, shape (N, 2).
+        end: Why it ended.
+        probability: Belief that it follows one cable from its start to its end.
+    """
+
+    points_px: Points
+    end: TraceEnd
+    probability: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Crossing:
+    """One place where a strand lies over another.
+
+    Attributes:
+        position_px: Where, shape (2,).
+        trace_over: Index of the upper strand's trace.
+        arc_over: Arc position on it.
+        trace_under: Index of the lower strand's trace.
+        arc_under: Arc position on it.
+        probability: Belief that over and under are this way round, in [0.5, 1].
+    """
+
+    position_px: Points
+    trace_over: int
+    arc_over: float
+    trace_under: int
+    arc_under: float
+    probability: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Knot:
+    """One knot on a trace, and where to hold it to loosen it.
+
+    Attributes:
+        trace: Index of the trace.
+        interval: Arc positions of its first (under) and last (over) visit of the crossing
+            that closes it.
+        first_undercrossing_px: Where it begins, shape (2,).
+        cage_px: Where a caging gripper lets the cable slide, shape (2,).
+        pinch_px: Where a pinching gripper holds the cable, shape (2,).
+        cage_direction: Unit tangent of the cable at the cage point, shape (2,).
+        pinch_direction: Unit tangent of the cable at the pinch point, shape (2,).
+    """
+
+    trace: int
+    interval: tuple[float, float]
+    first_undercrossing_px: Points
+    cage_px: Points
+    pinch_px: Points
+    cage_direction: Points
+    pinch_direction: Points
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CableScene:
+    """Everything that is believed about one image.
+
+    Attributes:
+        traces: Cables, the traced one first.
+        endpoints: Ends that were seen.
+        crossings: Crossings in the order of the first trace.
+        knots: Knots in the order of the first trace.
+        knotted_probability: Belief that at least one cable is knotted.
+        seconds: Time it took [s].
+    """
+
+    traces: tuple[Trace, ...]
+    endpoints: tuple[Endpoint, ...]
+    crossings: tuple[Crossing, ...]
+    knots: tuple[Knot, ...]
+    knotted_probability: float
+    seconds: float

@@ -1,0 +1,1 @@
+"""Robot descriptions, kinematics, planning, timing and drivers."""

@@ -1,0 +1,188 @@
+"""What skills ask of arms, and what a driver must do; numpy only, so that checks stay light.
+
+World frame: origin at the table's centre, x along its long side, y away from the robot,
+z up, z = 0 on the table's surface. A tool frame has z out of the hand and x along the
+opening direction of the fingers.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Literal, Protocol, runtime_checkable
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Arm = Literal["left", "right"]
+ARMS: tuple[Arm, Arm] = ("left", "right")
+Grip = Literal["open", "cage", "pinch"]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TcpGoal:
+    """Where the tool centre point of one arm should be, gripper pointing down.
+
+    Attributes:
+        position_m: In the world frame [m], shape (3,).
+        yaw_rad: Direction of finger opening in the table plane, from world x [rad]; None
+            leaves it free. The gripper is symmetric: yaw and yaw + pi are the same grasp.
+        max_tilt_rad: How far the tool may lean from straight down where that is out of
+            reach [rad].
+    """
+
+    position_m: Floats
+    yaw_rad: float | None = None
+    max_tilt_rad: float = 0.52
+
+
+@dataclass(frozen=True, slots=True)
+class MotionFailure:
+    """Why a motion cannot be planned.
+
+    Attributes:
+        code: `motion.unreachable`, `motion.collision`, `motion.no_path` or `motion.timing`.
+        stage: `ik`, `path`, `line`, `timing` or `verify`.
+        text: A sentence for people, with arm, goal, pair and distance where known.
+        pair: Names of the two bodies that collide, if that is the cause.
+    """
+
+    code: str
+    stage: str
+    text: str
+    pair: tuple[str, str] | None = None
+
+
+@runtime_checkable
+class Trajectory(Protocol):
+    """A timed, checked joint motion of all arms; exact at any rate."""
+
+    @property
+    def duration_s(self) -> float:
+        """Length in time [s]."""
+        ...
+
+    def at(self, time_s: float) -> tuple[Floats, Floats, Floats]:
+        """Return position, velocity and acceleration [rad, rad/s, rad/s2], shape (14,) each.
+
+        The left arm's seven joints come first, then the right arm's, in chain order.
+        Times outside [0, duration] give the first or the last state.
+        """
+        ...
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ArmsState:
+    """State of both arms and grippers.
+
+    Attributes:
+        positions_rad: Joint positions, shape (14,), left arm first.
+        velocities_rad_s: Joint velocities, shape (14,).
+        accelerations_rad_s2: Commanded joint accelerations, shape (14,).
+        openings_m: Distance between the fingers of each gripper [m].
+        moving: Whether a trajectory or a stop is being executed.
+        stamp_s: On the cell's clock [s].
+    """
+
+    positions_rad: Floats
+    velocities_rad_s: Floats
+    accelerations_rad_s2: Floats
+    openings_m: Mapping[Arm, float]
+    moving: bool
+    stamp_s: float
+
+
+@runtime_checkable
+class ArmsDriver(Protocol):
+    """Talks to the controllers of two arms; never blocks."""
+
+    def state(self) -> ArmsState:
+        """Return the latest state."""
+        ...
+
+    def execute(self, trajectory: Trajectory) -> None:
+        """Start a trajectory that begins at the present state.
+
+        Raises:
+            DeviceError: It begins elsewhere, or another one is running.
+        """
+        ...
+
+    def grip(self, arm: Arm, grip: Grip) -> None:
+        """Start opening or closing a gripper: `open` 50 mm, `cage` a ring, `pinch` shut."""
+        ...
+
+    def gripping(self, arm: Arm) -> bool:
+        """Return whether the fingers are still on their way."""
+        ...
+
+    def holds(self, arm: Arm) -> bool:
+        """Return whether something is between the closed fingers (they are not shut)."""
+        ...
+
+    def stop(self) -> None:
+        """Bring all joints to rest within their jerk limits; grippers keep what they hold."""
+        ...
+
+    def emergency_stop(self) -> None:
+        """Stop as fast as the brakes allow."""
+        ...
+
+
+@runtime_checkable
+class DualArm(Protocol):
+    """Two arms as skills use them: plan, start, wait tick by tick.
+
+    Plans begin at the present state, avoid collisions between arms, body and table, and are
+    verified at control rate before they may run.
+    """
+
+    def plan(self, goals: Mapping[Arm, TcpGoal]) -> Trajectory | MotionFailure:
+        """Plan a free motion that takes each named arm to its goal; the others stay.
+
+        Both arms move in synchrony when two are named.
+        """
+        ...
+
+    def plan_line(self, displacements_m: Mapping[Arm, Floats]) -> Trajectory | MotionFailure:
+        """Plan straight tool motions from the present poses, in step, orientation kept.
+
+        Args:
+            displacements_m: Vector of each named arm's tool in the world [m], shape (3,).
+        """
+        ...
+
+    def plan_home(self) -> Trajectory | MotionFailure:
+        """Plan a motion to the ready pose, arms out of the camera's view of the table."""
+        ...
+
+    def assign(self, goals: tuple[TcpGoal, TcpGoal]) -> tuple[Arm, Arm] | MotionFailure:
+        """Say which arm takes which of two goals so that both can be reached at once."""
+        ...
+
+    def reachable(self, arm: Arm, goal: TcpGoal) -> bool:
+        """Return whether that arm alone could reach the goal without collision."""
+        ...
+
+    def tcp_position(self, arm: Arm) -> Floats:
+        """Return the present position of a tool centre point in the world [m], shape (3,)."""
+        ...
+
+    def start(self, trajectory: Trajectory) -> None:
+        """Hand a planned trajectory to the driver."""
+        ...
+
+    def moving(self) -> bool:
+        """Return whether a motion or a gripper is still under way."""
+        ...
+
+    def grip(self, arm: Arm, grip: Grip) -> None:
+        """Start opening or closing a gripper."""
+        ...
+
+    def holds(self, arm: Arm) -> bool:
+        """Return whether something is between the fingers."""
+        ...
+
+    def stop(self) -> None:
+        """Bring both arms to rest within their jerk limits."""
+        ...

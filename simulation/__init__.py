@@ -1,0 +1,1 @@
+"""Simulated worlds; what is true in them is for scoring only."""

@@ -1,0 +1,1 @@
+"""Leaves of the trees, one skill a file; they talk to interfaces, never to a simulator."""

@@ -1,0 +1,1 @@
+"""Skills that look at a cable and act on it."""

@@ -1,0 +1,1 @@
+"""Skills that move arms and nothing else."""

@@ -1,0 +1,1 @@
+"""Trees, missions and cells in YAML, packaged as data."""
