@@ -41,7 +41,7 @@ class CameraModel:
         return scaled * self.focal_px + np.asarray(self.centre_px)
 
     def on_plane(self, points_px: Floats, height_m: float = 0.0) -> Floats:
-        """Return where the rays of image points [px] meet the plane z = height, shape (N, 3) [m]."""
+        """Return where rays of image points [px] meet the plane z = height, shape (N, 3) [m]."""
         offsets = (np.atleast_2d(points_px) - np.asarray(self.centre_px)) / self.focal_px
         rays = np.column_stack([offsets, np.ones(len(offsets))]) @ self.T_world_camera[:3, :3].T
         origin_m = self.T_world_camera[:3, 3]

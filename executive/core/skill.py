@@ -15,7 +15,7 @@ are written once:
 
         def run(self, image: Annotated[CameraFrame, In("overhead image")]) -> SkillRun:
             ends = self._vision.endpoints(image)
-            yield
+            yield  # the rest in the next tick
             if not ends:
                 return failure("endpoints.none")
             return success(endpoints=ends)
@@ -88,10 +88,12 @@ class Skill(ABC):
     Class attributes:
         OUT: Output ports by name; `success(name=value)` must give each of them.
         REASONS: Every code that `failure` may carry.
+        ACTS: Whether it moves something in the cell; run reports list it under actions.
     """
 
     OUT: ClassVar[Mapping[str, Port]] = MappingProxyType({})
     REASONS: ClassVar[frozenset[str]] = frozenset()
+    ACTS: ClassVar[bool] = False
 
     _generator: SkillRun | None = None
 

@@ -115,3 +115,16 @@ class CableScene:
     knots: tuple[Knot, ...]
     knotted_probability: float
     seconds: float
+
+
+@dataclass(frozen=True, slots=True)
+class CableClaim:
+    """What a mission says about the cable at its end.
+
+    Attributes:
+        untangled: Whether it says that no knot is left.
+        knotted_probability: Belief that a knot is left.
+    """
+
+    untangled: bool
+    knotted_probability: float
