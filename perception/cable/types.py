@@ -37,6 +37,19 @@ class Endpoint:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class TraceStart:
+    """First points of a trace, and the end that they come from.
+
+    Attributes:
+        points_px: Points in order from the end into the cable, shape (N, 2).
+        endpoint: The end that tracing starts from.
+    """
+
+    points_px: Points
+    endpoint: Endpoint
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class Trace:
     """The path of one cable.
 

@@ -1,0 +1,39 @@
+"""Find where a trace can start."""
+
+from typing import Annotated
+
+from executive.core.outcome import failure, success
+from executive.core.skill import In, Port, Skill, SkillRun
+from perception.cable.interfaces import CableVision
+from perception.cable.types import Endpoint, TraceStart
+from perception.camera import CameraFrame
+
+
+class FindStartPoints(Skill):
+    """Follow the cable for the first 96 px from an end, trying the surest end first.
+
+    SUCCESS: `start` has points of one unbranched piece of cable.
+    FAILURE: `start.unclear` when other strands are too close to every end.
+    """
+
+    OUT = {"start": Port(TraceStart, "first points of the trace")}
+    REASONS = frozenset({"start.unclear"})
+
+    def __init__(self, vision: CableVision) -> None:
+        """Bind perception."""
+        self._vision = vision
+
+    def run(
+        self,
+        frame: Annotated[CameraFrame, In("overhead frame")],
+        endpoints: Annotated[tuple[Endpoint, ...], In("ends of the cable, surest first")],
+    ) -> SkillRun:
+        """Try one end a tick."""
+        for endpoint in endpoints:
+            points_px = self._vision.start_points(frame.image, endpoint)
+            if points_px is not None:
+                return success(start=TraceStart(points_px, endpoint))
+            yield
+        return failure(
+            "start.unclear", "no end has a clear piece of cable behind it", ends=len(endpoints)
+        )

@@ -1,0 +1,54 @@
+"""From image points on a cable to goals for a gripper that straddles it."""
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from perception.cable.types import Points
+from perception.camera import CameraFrame
+from robots.interfaces import ARMS, Arm, DualArm, TcpGoal
+
+# Finger tips end 6 mm beyond the tool centre point: they stay 2 mm above the cloth and reach
+# past the axis of a cable of 6.6 mm diameter.
+GRASP_HEIGHT_M = 0.008
+CLEARANCE_M = 0.06
+
+
+def grasp_goal(frame: CameraFrame, point_px: Points, direction: Points) -> TcpGoal:
+    """Return the goal that puts the fingers on both sides of the cable.
+
+    Args:
+        frame: Frame that the point was seen in.
+        point_px: Point on the cable's centre line, shape (2,).
+        direction: Tangent of the cable in the image, shape (2,).
+
+    Returns:
+        A goal on the table whose opening direction is square to the cable.
+    """
+    position_m = frame.camera.on_plane(point_px)[0] + np.array([0.0, 0.0, GRASP_HEIGHT_M])
+    # Image y runs against world y; the opening direction is the tangent turned by 90 degrees.
+    yaw_rad = float(np.arctan2(direction[0], direction[1]))
+    return TcpGoal(position_m, yaw_rad)
+
+
+def tangent_at(points_px: Points, index: int, reach: int = 2) -> Points:
+    """Return the unit tangent of a path at a point, over `reach` points to either side."""
+    before = points_px[max(0, index - reach)]
+    after = points_px[min(len(points_px) - 1, index + reach)]
+    chord = after - before
+    tangent: Points = chord / max(float(np.linalg.norm(chord)), 1e-9)
+    return tangent
+
+
+def nearest_arms(position_m: Points) -> tuple[Arm, Arm]:
+    """Return both arms, the one on the point's side first (the left arm stands at -x)."""
+    return ARMS if position_m[0] < 0.0 else (ARMS[1], ARMS[0])
+
+
+def first_reachable(arms: DualArm, goals: Iterable[TcpGoal]) -> tuple[Arm, TcpGoal] | None:
+    """Return the first goal that an arm can reach, with that arm."""
+    for goal in goals:
+        for arm in nearest_arms(goal.position_m):
+            if arms.reachable(arm, goal):
+                return arm, goal
+    return None
