@@ -1,0 +1,14 @@
+"""Robots as data: tables of dimensions, and the URDF files that are written from them."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+from robots.descriptions.model import RobotDescription
+from robots.descriptions.yumi import yumi
+
+DESCRIPTIONS: dict[str, Callable[[], RobotDescription]] = {"yumi": yumi}
+
+
+def urdf_path(name: str) -> Path:
+    """Return the packaged URDF file of a robot, e.g. `yumi`."""
+    return Path(__file__).with_name(f"{name}.urdf")
