@@ -1,0 +1,18 @@
+"""How Sphinx builds the documentation: Markdown pages, warnings are errors (`make docs`)."""
+
+project = "Cellwright"
+project_copyright = "The Cellwright developers"
+extensions = ["myst_parser"]
+source_suffix = {".md": "markdown"}
+root_doc = "index"
+exclude_patterns: list[str] = []
+
+# Headings down to this level can be linked to as #their-words, as on a code host.
+myst_heading_anchors = 3
+myst_enable_extensions = ["colon_fence", "dollarmath"]
+myst_url_schemes = ["http", "https"]
+
+html_theme = "furo"
+html_title = "Cellwright"
+html_show_sourcelink = False
+html_show_copyright = False
