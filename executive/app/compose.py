@@ -1,0 +1,78 @@
+"""Pick the world, the arms and the perception behind a cell's devices.
+
+The heavy imports of the project meet here and nowhere else.
+"""
+
+from collections.abc import Iterable, Mapping
+
+import numpy as np
+
+from executive.core.clock import Clock
+from executive.core.errors import InputError
+from executive.core.registry import closest
+from executive.core.world import Cell, StreamMessage
+from executive.engine.document import CellDocument
+from perception.cable.interfaces import CableVision
+
+
+class _EquippedCell:
+    """A world with the services that skills use on top of its devices."""
+
+    def __init__(self, world: Cell, services: Mapping[str, object]) -> None:
+        self._world = world
+        self.devices: Mapping[str, object] = {**world.devices, **services}
+
+    @property
+    def clock(self) -> Clock:
+        return self._world.clock
+
+    def drain_streams(self) -> Iterable[StreamMessage]:
+        return self._world.drain_streams()
+
+    def stop(self) -> None:
+        self._world.stop()
+
+    def close(self) -> None:
+        self._world.close()
+
+    def truth(self) -> object | None:
+        return self._world.truth()
+
+
+def open_cell(document: CellDocument, scenario: Mapping[str, object], seed: int) -> Cell:
+    """Open the cell that a document describes.
+
+    Args:
+        document: The cell document.
+        scenario: What to set up in it; checked by the world.
+        seed: Seed of everything random in it.
+
+    Raises:
+        InputError: Unknown world, or a configuration or scenario that the world refuses.
+    """
+    worlds = {"table_cell": _open_table_cell}
+    if document.world not in worlds:
+        raise InputError(f"unknown world {document.world!r}; {closest(document.world, [*worlds])}")
+    return worlds[document.world](document.config, scenario, seed)
+
+
+def _open_table_cell(
+    config: Mapping[str, object], scenario: Mapping[str, object], seed: int
+) -> Cell:
+    from robots.dual_arm import PlannedDualArm
+    from simulation.table_cell import TableCell
+
+    world = TableCell(config, scenario, seed)
+    services = {
+        "arms": PlannedDualArm(world.driver, seed=seed),
+        "vision": cable_vision(),
+        "rng": np.random.default_rng(seed),
+    }
+    return _EquippedCell(world, services)
+
+
+def cable_vision() -> CableVision:
+    """Return the perception that missions and `perceive` use."""
+    from perception.cable.vision import ClassicCableVision
+
+    return ClassicCableVision()
