@@ -1,0 +1,128 @@
+"""From curves to diagrams: where a curve crosses itself, and how an open one is closed.
+
+An open cable is closed by a straight piece that passes over everything (thesis, section
+2.2). Diagrams live on the sphere, so any other way over everything gives the same knot.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from perception.cable.topology.diagram import Diagram, compact
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class StrandCrossing:
+    """A crossing of a curve with itself.
+
+    Attributes:
+        first: Position of the earlier visit, in segments from the start of the curve.
+        second: Position of the later visit.
+        turn: +1 where the later strand runs counter-clockwise (y up) of the earlier one.
+        first_over: Whether the earlier strand is on top.
+    """
+
+    first: float
+    second: float
+    turn: int
+    first_over: bool
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Strand:
+    """An open curve in the plane with its crossings.
+
+    Attributes:
+        points: Corners of the curve, shape (N, 2).
+        crossings: Where it crosses itself.
+    """
+
+    points: Floats
+    crossings: tuple[StrandCrossing, ...]
+
+
+def intersections(a: Floats, b: Floats) -> tuple[Floats, Floats, NDArray[np.int64]]:
+    """Find where two polylines cross.
+
+    Args:
+        a: Corners of one, shape (N, 2).
+        b: Corners of the other, shape (M, 2).
+
+    Returns:
+        Positions along `a`, along `b` (in segments from their starts), and the turn from
+        `a` onto `b` (+1 counter-clockwise with y up), each of shape (K,).
+    """
+    ends_left = _sides(a, b)
+    starts_left = _sides(b, a).T
+    meet = (ends_left[:, :-1] != ends_left[:, 1:]) & (starts_left[:-1] != starts_left[1:])
+    i, j = np.nonzero(meet)
+    along_a, along_b = a[i + 1] - a[i], b[j + 1] - b[j]
+    area = _cross(along_a, along_b)
+    apart = area != 0.0
+    i, j, area = i[apart], j[apart], area[apart]
+    offset = b[j] - a[i]
+    u = np.clip(_cross(offset, along_b[apart]) / area, 0.0, 1.0)
+    v = np.clip(_cross(offset, along_a[apart]) / area, 0.0, 1.0)
+    return i + u, j + v, np.sign(area).astype(np.int64)
+
+
+def _sides(lines: Floats, points: Floats) -> NDArray[np.bool_]:
+    """Say for each segment of `lines` which of `points` lie to its left."""
+    along = lines[1:] - lines[:-1]
+    offset = points[None, :, :] - lines[:-1, None, :]
+    left: NDArray[np.bool_] = _cross(along[:, None, :], offset) >= 0.0
+    return left
+
+
+def _cross(a: Floats, b: Floats) -> Floats:
+    product: Floats = a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
+    return product
+
+
+def self_intersections(points: Floats) -> tuple[Floats, Floats, NDArray[np.int64]]:
+    """Return the crossings of a polyline with itself as `intersections` does, each once."""
+    first, second, turn = intersections(points, points)
+    # Neighbouring segments share a corner, which is no crossing.
+    once = np.floor(second) > np.floor(first) + 1
+    return first[once], second[once], turn[once]
+
+
+def curve_crossings(nodes: Floats) -> Strand:
+    """View a curve in space from above (+z).
+
+    Args:
+        nodes: Centre line, shape (N, 3).
+    """
+    points, heights = nodes[:, :2], nodes[:, 2]
+    first, second, turn = self_intersections(points)
+    index = np.arange(len(nodes), dtype=float)
+    higher = np.interp(first, index, heights) > np.interp(second, index, heights)
+    crossings = [
+        StrandCrossing(float(a), float(b), int(t), bool(over))
+        for a, b, t, over in zip(first, second, turn, higher, strict=True)
+    ]
+    return Strand(points, tuple(sorted(crossings, key=lambda crossing: crossing.first)))
+
+
+def close_over(strand: Strand) -> Diagram:
+    """Return the diagram of an open curve closed by a chord over everything."""
+    visits: list[tuple[float, int, bool]] = []
+    sign_of: dict[int, int] = {}
+    for number, crossing in enumerate(strand.crossings):
+        visits.append((crossing.first, number, crossing.first_over))
+        visits.append((crossing.second, number, not crossing.first_over))
+        sign_of[number] = crossing.turn if crossing.first_over else -crossing.turn
+    last = len(strand.points) - 1
+    chord = strand.points[[-1, 0]]
+    on_chord, on_curve, turn = intersections(chord, strand.points)
+    inside = (on_curve >= 1.0) & (on_curve <= last - 1.0)
+    chord_hits = zip(on_chord[inside], on_curve[inside], turn[inside], strict=True)
+    for number, (s, position, t) in enumerate(chord_hits, start=len(strand.crossings)):
+        visits.append((last + 1.0 + float(s), number, True))
+        visits.append((float(position), number, False))
+        sign_of[number] = int(t)
+    visits.sort()
+    return compact([v[1] for v in visits], [v[2] for v in visits], sign_of)

@@ -1,0 +1,89 @@
+"""A knot diagram as a signed Gauss code, and the faces it cuts the sphere into.
+
+Follow the closed curve and write down each crossing as it is passed: its number and whether
+the strand is on top. With the sign of every crossing this fixes the diagram on the sphere.
+A crossing is positive when the upper strand turns counter-clockwise (y up) onto the lower.
+"""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class Diagram:
+    """A closed curve with n crossings.
+
+    Attributes:
+        visits: Number of the crossing at each of the 2n visits, in the order of the curve.
+        over: Whether the strand is on top at that visit; each crossing once each way.
+        signs: +1 or -1 for each crossing.
+    """
+
+    visits: tuple[int, ...]
+    over: tuple[bool, ...]
+    signs: tuple[int, ...]
+
+    def __len__(self) -> int:
+        """Return the number of crossings."""
+        return len(self.signs)
+
+    def partners(self) -> list[int]:
+        """Return for each visit the place of the other visit of the same crossing."""
+        first: dict[int, int] = {}
+        other = [0] * len(self.visits)
+        for place, crossing in enumerate(self.visits):
+            if crossing in first:
+                other[place], other[first[crossing]] = first[crossing], place
+            else:
+                first[crossing] = place
+        return other
+
+    def faces(self) -> tuple[list[int], list[int], int]:
+        """Return the face to the left and to the right of each edge, and how many there are.
+
+        Edge e runs from visit e to visit e + 1 (cyclic).
+        """
+        count, other = len(self.visits), self.partners()
+        sides = [[-1] * count, [-1] * count]  # of edges walked backwards, forwards
+        faces = 0
+        for start in range(2 * count):
+            edge, forward = start >> 1, bool(start & 1)
+            if sides[forward][edge] >= 0:
+                continue
+            while sides[forward][edge] < 0:
+                sides[forward][edge] = faces
+                edge, forward = self._turn_left(other, edge, forward)
+            faces += 1
+        return sides[1], sides[0], faces
+
+    def _turn_left(self, other: list[int], edge: int, forward: bool) -> tuple[int, bool]:
+        """Return the next edge of the face on the left, and the way it is walked."""
+        count = len(self.visits)
+        place = (edge + 1) % count if forward else edge
+        goes_on = (forward == self.over[place]) == (self.signs[self.visits[place]] > 0)
+        return (other[place], True) if goes_on else ((other[place] - 1) % count, False)
+
+    def is_planar(self) -> bool:
+        """Say whether it can be drawn on the sphere: Euler's formula F = n + 2."""
+        return not self.visits or self.faces()[2] == len(self) + 2
+
+    def swapped(self, crossings: frozenset[int]) -> "Diagram":
+        """Return the diagram with over and under exchanged at `crossings`."""
+        over = tuple(
+            on_top != (crossing in crossings)
+            for crossing, on_top in zip(self.visits, self.over, strict=True)
+        )
+        signs = tuple(-s if c in crossings else s for c, s in enumerate(self.signs))
+        return Diagram(self.visits, over, signs)
+
+    def mirrored(self) -> "Diagram":
+        """Return the mirror image: over and under exchanged everywhere."""
+        return self.swapped(frozenset(range(len(self))))
+
+
+def compact(visits: list[int], over: list[bool], sign_of: dict[int, int]) -> Diagram:
+    """Return the diagram of these visits with crossings numbered as they are met first."""
+    numbers: dict[int, int] = {}
+    for crossing in visits:
+        numbers.setdefault(crossing, len(numbers))
+    signs = tuple(sign_of[crossing] for crossing in numbers)
+    return Diagram(tuple(numbers[crossing] for crossing in visits), tuple(over), signs)

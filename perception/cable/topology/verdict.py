@@ -1,0 +1,85 @@
+"""Is it knotted? Answered with a proof, or not at all."""
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from perception.cable.topology.alexander import alexander_polynomial, determinant
+from perception.cable.topology.curve import close_over, curve_crossings
+from perception.cable.topology.diagram import Diagram
+from perception.cable.topology.simplify import simplify
+
+# The smallest knots with a trivial Alexander polynomial are the Kinoshita-Terasaka and
+# Conway knots with 11 crossings (tables of knots to 10 crossings: D. Rolfsen 1976).
+ALEXANDER_DECIDES_CROSSINGS = 10
+
+
+class Knottedness(StrEnum):
+    """What is known about a closed curve."""
+
+    UNKNOT = "unknot"
+    KNOTTED = "knotted"
+    UNDECIDED = "undecided"
+
+
+class Proof(StrEnum):
+    """Why it is known."""
+
+    MOVES = "moves"
+    ALEXANDER = "alexander polynomial"
+    TABLES = "alexander polynomial and knot tables"
+    NONE = "none"
+
+
+@dataclass(frozen=True, slots=True)
+class Verdict:
+    """The answer for one curve.
+
+    Attributes:
+        state: Knotted or not.
+        proof: What proves it.
+        crossings: Crossings of the curve as it was seen, without its closure.
+        reduced_crossings: Crossings that were left after simplifying.
+    """
+
+    state: Knottedness
+    proof: Proof
+    crossings: int
+    reduced_crossings: int
+
+
+def classify_curve(nodes_m: NDArray[np.float64]) -> Verdict:
+    """Say whether a cable is knotted when its ends are joined over everything.
+
+    Args:
+        nodes_m: Ordered centre line, shape (N, 3), z up; it is viewed from above.
+    """
+    strand = curve_crossings(np.asarray(nodes_m, dtype=float))
+    return classify_diagram(close_over(strand), len(strand.crossings))
+
+
+def classify_diagram(diagram: Diagram, crossings: int | None = None) -> Verdict:
+    """Say whether a closed diagram is knotted.
+
+    Args:
+        diagram: The diagram; one that cannot be drawn in the plane stays undecided.
+        crossings: How many crossings to report as seen; the diagram's own by default.
+    """
+    seen = len(diagram) if crossings is None else crossings
+    if not diagram.is_planar():
+        return Verdict(Knottedness.UNDECIDED, Proof.NONE, seen, len(diagram))
+    reduced = simplify(diagram)
+    state, proof = _decide(reduced)
+    return Verdict(state, proof, seen, len(reduced))
+
+
+def _decide(reduced: Diagram) -> tuple[Knottedness, Proof]:
+    if not reduced.visits:
+        return Knottedness.UNKNOT, Proof.MOVES
+    if determinant(reduced) != 1 or alexander_polynomial(reduced) != (1,):
+        return Knottedness.KNOTTED, Proof.ALEXANDER
+    if len(reduced) <= ALEXANDER_DECIDES_CROSSINGS:
+        return Knottedness.UNKNOT, Proof.TABLES
+    return Knottedness.UNDECIDED, Proof.NONE
