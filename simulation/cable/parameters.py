@@ -1,0 +1,52 @@
+"""What the cable and its surroundings are made of."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class RodParameters:
+    """A braided USB cable on a cloth-covered table.
+
+    Attributes:
+        node_spacing_m: Arc length between neighbouring nodes.
+        radius_m: Radius of the cable.
+        density_kg_m: Mass per length.
+        connector_mass_kg: Mass of the plug at each end.
+        connector_length_m: Length of the plug; it covers the last stretch of the node chain.
+        bending_stiffness_n_m2: E I; 2e-4 lets a 10 cm overhang sag by about 2 cm.
+        bending_damping_s: Ratio of bending damping to bending stiffness (Kelvin-Voigt).
+        axial_stiffness_n: E A; high enough that the cable does not visibly stretch.
+        air_damping_1_s: Rate at which free motion dies out.
+        friction_table: Coulomb coefficient of cable on cloth.
+        friction_self: Coulomb coefficient of cable on cable.
+        friction_obstacles: Coulomb coefficient of cable on fingers and links.
+        friction_cage: Coulomb coefficient of cable sliding through a caging gripper.
+        cage_clearance_m: How far the cable's centre line may lie off the centre of a cage.
+        pinch_force_n: Tension at which the cable slips through a pinching gripper.
+        overload_force_n: Force at which a strand is torn out of any grasp sideways.
+        table_size_m: Size of the table in x and y; its top is z = 0, its centre the origin.
+        floor_height_m: Height of the floor beside the table.
+        gravity_m_s2: Acceleration of free fall, downwards.
+        substep_s: Nominal length of one solver step.
+    """
+
+    node_spacing_m: float = 0.01
+    radius_m: float = 0.0033
+    density_kg_m: float = 0.035
+    connector_mass_kg: float = 0.004
+    connector_length_m: float = 0.02
+    bending_stiffness_n_m2: float = 2.0e-4
+    bending_damping_s: float = 0.01
+    axial_stiffness_n: float = 1.0e4
+    air_damping_1_s: float = 0.2
+    friction_table: float = 0.4
+    friction_self: float = 0.25
+    friction_obstacles: float = 0.3
+    friction_cage: float = 0.15
+    cage_clearance_m: float = 0.002
+    pinch_force_n: float = 15.0
+    overload_force_n: float = 60.0
+    table_size_m: tuple[float, float] = (1.0, 0.75)
+    floor_height_m: float = -0.75
+    gravity_m_s2: float = 9.81
+    substep_s: float = 0.00025
