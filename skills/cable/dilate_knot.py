@@ -1,0 +1,164 @@
+"""Loosen or undo a knot: one hand cages the cable, the other pinches it, both pull apart."""
+
+from collections.abc import Generator, Mapping, Sequence
+from typing import Annotated
+
+import numpy as np
+
+from executive.core.outcome import failure, success
+from executive.core.skill import In, Skill, SkillRun
+from perception.cable.grasp_sites import SIDE_ROOM_PX, GraspSite, cage_sites, pinch_sites
+from perception.cable.types import Crossing, Knot, Trace
+from perception.camera import CameraFrame
+from robots.interfaces import Arm, DualArm, Floats, MotionFailure, TcpGoal
+from skills.cable.grasping import CLEARANCE_M, grasp_goal
+from skills.motion.steps import MOTION_REASONS, MotionSteps, descend, move_by, release, set_grips
+
+# Two grippers that point straight down touch each other when they are nearer than this.
+HANDS_APART_M = 0.11
+LIFT_M = 0.03
+# Where hands can go on the table (measured reach of both arms, straight down).
+REACH_X_M = 0.38
+REACH_Y_M = (-0.20, 0.17)
+MOST_PAIRS = 60
+# Only weighs arc lengths against crowding; the real length may differ.
+CABLE_LENGTH_M = 3.0
+
+
+class DilateKnot(Skill):
+    """Pull a knot open with a caging and a pinching gripper (thesis, section 3.5).
+
+    The cable slides through the cage, so that the loop grows and the tail is drawn out of it,
+    while the pinch keeps other knots in series from running together.
+
+    SUCCESS: both hands held the cable, moved apart and laid it down.
+    FAILURE: `knot.none` when there is no knot to dilate; `grasp.unreachable` when no pair of
+        sites suits both arms; `grasp.missed` when a hand closed on nothing; a motion reason.
+    stop(): arms come to rest; a held cable stays held.
+    """
+
+    REASONS = MOTION_REASONS | {"knot.none", "grasp.unreachable", "grasp.missed"}
+    ACTS = True
+
+    def __init__(self, arms: DualArm) -> None:
+        """Bind the arms."""
+        self._arms = arms
+
+    def run(
+        self,
+        frame: Annotated[CameraFrame, In("overhead frame")],
+        trace: Annotated[Trace, In("path of the cable")],
+        crossings: Annotated[tuple[Crossing, ...], In("crossings of the trace")],
+        knots: Annotated[tuple[Knot, ...], In("knots of the trace")],
+        separation_m: Annotated[float, In("how far apart the hands end", "m")] = 0.6,
+    ) -> SkillRun:
+        """Choose a pair of grasps, take hold, lift, pull apart, lay down, rise."""
+        if not knots:
+            return failure("knot.none", "no knot was found to dilate")
+        pair = yield from self._choose_pair(frame, trace, crossings, knots[0])
+        if pair is None:
+            return failure("grasp.unreachable", "no cage and pinch sites suit both arms at once")
+        hands, goals = pair
+        failed = yield from descend(self._arms, goals, CLEARANCE_M)
+        missed: list[Arm] = []
+        if failed is None:
+            yield from set_grips(self._arms, {hands[0]: "cage", hands[1]: "pinch"})
+            missed = [arm for arm in hands if not self._arms.holds(arm)]
+            if not missed:
+                failed = yield from self._pull_apart(hands, separation_m)
+        risen = yield from release(self._arms, hands, CLEARANCE_M)
+        if missed:
+            return failure("grasp.missed", f"closed on nothing: {', '.join(missed)}")
+        failed = failed or risen
+        if failed is not None:
+            return failure(failed.code, failed.text, stage=failed.stage)
+        return success()
+
+    def stop(self) -> None:
+        """Bring the arms to rest."""
+        self._arms.stop()
+
+    def _choose_pair(
+        self, frame: CameraFrame, trace: Trace, crossings: Sequence[Crossing], knot: Knot
+    ) -> Generator[None, None, tuple[tuple[Arm, Arm], dict[Arm, TcpGoal]] | None]:
+        """Return (cage hand, pinch hand) and their goals for the best pair that both reach."""
+        pairs = ranked_pairs(
+            cage_sites(trace, crossings, knot), pinch_sites(trace, crossings, knot), frame
+        )
+        for cage, pinch in pairs[:MOST_PAIRS]:
+            goals = (_goal(frame, cage), _goal(frame, pinch))
+            hands = self._arms.assign(goals)
+            if not isinstance(hands, MotionFailure):
+                return hands, dict(zip(hands, goals, strict=True))
+            yield
+        return None
+
+    def _pull_apart(self, hands: tuple[Arm, Arm], separation_m: float) -> MotionSteps:
+        """Lift, move apart as far as asked or as far as the arms reach, lay down."""
+        up_m = np.array([0.0, 0.0, LIFT_M])
+        failed = yield from move_by(self._arms, dict.fromkeys(hands, up_m))
+        if failed is not None:
+            return failed
+        tips_m = {arm: self._arms.tcp_position(arm) for arm in hands}
+        present_m = float(np.linalg.norm(tips_m["left"] - tips_m["right"]))
+        for span_m in np.linspace(separation_m, present_m, 6)[:-1]:
+            failed = yield from move_by(self._arms, apart(tips_m, float(span_m)))
+            if failed is None:
+                break
+        laid = yield from move_by(self._arms, dict.fromkeys(hands, -up_m))
+        return failed or laid
+
+
+def ranked_pairs(
+    cages: Sequence[GraspSite], pinches: Sequence[GraspSite], frame: CameraFrame
+) -> list[tuple[GraspSite, GraspSite]]:
+    """Return pairs of sites that leave room for two hands, best first.
+
+    What is drawn out of the knot is the final separation less the cable that already lies
+    between the hands, so short pieces come first; a crowded site costs as much as 20 cm.
+    """
+
+    def cost_m(pair: tuple[GraspSite, GraspSite]) -> float:
+        between_m = abs(pair[1].arc - pair[0].arc) * CABLE_LENGTH_M
+        crowding = sum(max(0.0, 1.0 - site.room_px / SIDE_ROOM_PX) for site in pair)
+        return between_m + 0.4 * crowding
+
+    spots_m = {id(site): _spot_m(frame, site) for site in (*cages, *pinches)}
+    roomy = [
+        (cage, pinch)
+        for cage in cages
+        for pinch in pinches
+        if np.linalg.norm(spots_m[id(cage)] - spots_m[id(pinch)]) >= HANDS_APART_M
+        and in_reach(spots_m[id(cage)])
+        and in_reach(spots_m[id(pinch)])
+    ]
+    return sorted(roomy, key=cost_m)
+
+
+def in_reach(position_m: Floats) -> bool:
+    """Return whether a point lies in the part of the table that the arms reach."""
+    return bool(abs(position_m[0]) <= REACH_X_M and REACH_Y_M[0] <= position_m[1] <= REACH_Y_M[1])
+
+
+def apart(tips_m: Mapping[Arm, Floats], span_m: float) -> dict[Arm, Floats]:
+    """Return displacements that put the hands `span_m` apart along the table's long side.
+
+    The long side has the reach for it; the middle between the hands moves only as far as the
+    reach demands.
+    """
+    middle_m = (tips_m["left"] + tips_m["right"]) / 2.0
+    most_m = max(0.0, REACH_X_M - span_m / 2.0)
+    middle_x_m = float(np.clip(middle_m[0], -most_m, most_m))
+    middle_y_m = float(np.clip(middle_m[1], REACH_Y_M[0] + 0.03, REACH_Y_M[1] - 0.03))
+    ends_m = {"left": middle_x_m - span_m / 2.0, "right": middle_x_m + span_m / 2.0}
+    return {
+        arm: np.array([ends_m[arm], middle_y_m, tips_m[arm][2]]) - tips_m[arm] for arm in tips_m
+    }
+
+
+def _spot_m(frame: CameraFrame, site: GraspSite) -> Floats:
+    return frame.camera.on_plane(site.point_px)[0]
+
+
+def _goal(frame: CameraFrame, site: GraspSite) -> TcpGoal:
+    return grasp_goal(frame, site.point_px, site.direction)
