@@ -1,0 +1,196 @@
+"""What stands still, and how what moves is drawn: a cell as a list of Meshcat's commands."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from meshcat.commands import Delete, SetObject, SetProperty, SetTransform
+from meshcat.geometry import (
+    Box,
+    LineBasicMaterial,
+    LineSegments,
+    MeshBasicMaterial,
+    MeshPhongMaterial,
+    PointsGeometry,
+)
+from meshcat.path import Path
+from scipy.spatial.transform import Rotation
+
+from robots.descriptions.model import Box as DescribedBox
+from robots.descriptions.model import Link, RobotDescription, Vec3
+from robots.interfaces import Floats
+from robots.placement import Placement, PlanningScene, StaticBox
+from robots.viewer.frame import SceneFrame, thinned
+from robots.viewer.shapes import Tube, drawn
+
+CABLE_POINTS = 120
+TRACE_POINTS = 120
+TRACE_RADIUS_M = 0.006  # wider than the cable: a halo where the trace agrees with it
+
+_CABLE = MeshPhongMaterial(color=0xF4F4F0, shininess=40)
+_TRACE = MeshBasicMaterial(color=0xFF9A2E, opacity=0.8)
+_WOOD = MeshPhongMaterial(color=0xB9A68A)
+_CLOTH = MeshPhongMaterial(color=0x17181B, shininess=2)
+_METAL = MeshPhongMaterial(color=0x8A8F98)
+_LENS = MeshPhongMaterial(color=0x2B2F36)
+_SIGHT = LineBasicMaterial(color=0x5B8DEF)
+
+_FLOOR_M = -0.75
+_CLOTH_M = 0.002
+_CAMERA_BOX_M = (0.10, 0.06, 0.06)
+# Where the eye stands at first, world axes [m]; it looks at the table's centre.
+_EYE_M: Vec3 = (0.85, 1.50, 1.05)
+_FIELD_OF_VIEW_DEG = 38.0
+# Meshcat's own lights, dimmed so that a white robot keeps its shape.
+_LIGHTS = {
+    "AmbientLight": 0.68,
+    "FillLight": 0.2,
+    "PointLightNegativeX": 0.42,
+    "PointLightPositiveX": 0.25,
+}
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CameraCone:
+    """What an overhead camera sees.
+
+    Attributes:
+        position_m: The camera in the world [m], shape (3,).
+        corners_m: Where the corners of its image meet the table, in order, shape (4, 3) [m].
+    """
+
+    position_m: Floats
+    corners_m: Floats
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Stage:
+    """A cell before anything moves.
+
+    Attributes:
+        robot: Its links are drawn from its shapes.
+        scene: Where the robot stands, and the boxes around it; a box named `table` gets a
+            cloth and legs.
+        cable_radius_m: Radius of the cable [m].
+        camera: The overhead camera, if it is to be drawn.
+    """
+
+    robot: RobotDescription
+    scene: PlanningScene
+    cable_radius_m: float
+    camera: CameraCone | None = None
+
+    def commands(self) -> Iterator[Any]:
+        """Yield the commands that build the scene."""
+        yield from _surroundings()
+        for box in self.scene.boxes:
+            yield from _table(box) if box.name == "table" else _box(f"cell/{box.name}", box, _METAL)
+        yield from self._robot()
+        if self.camera is not None:
+            yield from _camera(self.camera)
+
+    def _robot(self) -> Iterator[Any]:
+        for link in self.robot.links:
+            red, green, blue, alpha = link.colour
+            colour = (round(255 * red) << 16) + (round(255 * green) << 8) + round(255 * blue)
+            material = MeshPhongMaterial(color=colour, opacity=alpha)
+            for number, shape in enumerate(link.shapes):
+                geometry, T_link_shape = drawn(shape)
+                path = _path(f"robot/{link.name}/{number}")
+                yield SetObject(geometry, material, path)
+                yield SetTransform(T_link_shape, path)
+        placement = self.scene.placement
+        root_pose = np.concatenate(
+            [placement.position_m, Rotation.from_euler("z", placement.yaw_rad).as_quat()]
+        )
+        root = self.robot.links[0]
+        yield move_link(root.name, root_pose)
+        yield from _pedestal(root, placement)
+
+    def draw_cable(self, frame: SceneFrame) -> SetObject:
+        """Return the command that draws the cable as it lies in a frame."""
+        tube = Tube(thinned(frame.cable_m, CABLE_POINTS), self.cable_radius_m)
+        return SetObject(tube, _CABLE, _path("cable"))
+
+
+def move_link(name: str, pose: Floats) -> SetTransform:
+    """Return the command that puts a link to a pose: position [m], quaternion xyzw."""
+    T_world_link = np.eye(4)
+    T_world_link[:3, :3] = Rotation.from_quat(pose[3:]).as_matrix()
+    T_world_link[:3, 3] = pose[:3]
+    return SetTransform(T_world_link, _path(f"robot/{name}"))
+
+
+def draw_trace(frame: SceneFrame) -> SetObject | Delete:
+    """Return the command that lays the trace of a frame on the table, or takes it away."""
+    if frame.trace_m is None:
+        return Delete(_path("trace"))
+    tube = Tube(thinned(frame.trace_m, TRACE_POINTS), TRACE_RADIUS_M)
+    return SetObject(tube, _TRACE, _path("trace"))
+
+
+def _path(text: str) -> Path:
+    return Path(tuple(text.split("/")))
+
+
+def _surroundings() -> Iterator[Any]:
+    """Set the background, the lights, the floor and the eye."""
+    yield SetProperty("top_color", [0.93, 0.95, 0.97], _path("Background"))
+    yield SetProperty("bottom_color", [0.70, 0.74, 0.79], _path("Background"))
+    yield SetProperty("visible", False, _path("Axes"))
+    yield SetTransform(_shift((0.0, 0.0, _FLOOR_M)), _path("Grid"))
+    for light, intensity in _LIGHTS.items():
+        yield SetProperty("intensity", intensity, _path(f"Lights/{light}/<object>"))
+    eye = _path("Cameras/default/rotated/<object>")
+    x, y, z = _EYE_M
+    yield SetProperty("position", [x, z, -y], eye)  # the eye's own frame has y up
+    yield SetProperty("fov", _FIELD_OF_VIEW_DEG, eye)
+
+
+def _table(top: StaticBox) -> Iterator[Any]:
+    yield from _box("cell/table", top, _WOOD)
+    (x, y, z), (width, depth, height) = top.centre_m, top.size_m
+    cloth = StaticBox("cloth", (x, y, z + (height - _CLOTH_M) / 2 + 1e-4), (width, depth, _CLOTH_M))
+    yield from _box("cell/cloth", cloth, _CLOTH)
+    leg_m = z - height / 2 - _FLOOR_M
+    for number, (side, end) in enumerate(((-1, -1), (-1, 1), (1, -1), (1, 1))):
+        middle = (x + side * (width / 2 - 0.04), y + end * (depth / 2 - 0.04), _FLOOR_M + leg_m / 2)
+        yield from _box(f"cell/leg_{number}", StaticBox("leg", middle, (0.05, 0.05, leg_m)), _METAL)
+
+
+def _pedestal(root: Link, placement: Placement) -> Iterator[Any]:
+    """Put a block under the first box of the robot's root, down to the floor."""
+    base = next(shape for shape in root.shapes if isinstance(shape, DescribedBox))
+    low_m, high_m = np.asarray(base.low_m), np.asarray(base.high_m)
+    under_m = placement.position_m[2] + low_m[2] - _FLOOR_M
+    middle_m = (low_m + high_m) / 2
+    T_world_block = np.eye(4)
+    turn = Rotation.from_euler("z", placement.yaw_rad)
+    T_world_block[:3, :3] = turn.as_matrix()
+    T_world_block[:3, 3] = placement.position_m + turn.apply([middle_m[0], middle_m[1], 0.0])
+    T_world_block[2, 3] = _FLOOR_M + under_m / 2
+    path = _path("cell/pedestal")
+    width, depth = (high_m - low_m)[:2]
+    yield SetObject(Box([width, depth, under_m]), _METAL, path)
+    yield SetTransform(T_world_block, path)
+
+
+def _camera(camera: CameraCone) -> Iterator[Any]:
+    x, y, z = (float(value) for value in camera.position_m)
+    yield from _box("camera/body", StaticBox("camera", (x, y, z + 0.03), _CAMERA_BOX_M), _LENS)
+    edges = [(camera.position_m, corner) for corner in camera.corners_m]
+    edges += list(zip(camera.corners_m, np.roll(camera.corners_m, -1, axis=0), strict=True))
+    ends_m = np.asarray(edges, dtype=np.float32).reshape(-1, 3)
+    yield SetObject(LineSegments(PointsGeometry(ends_m.T), _SIGHT), None, _path("camera/sight"))
+
+
+def _box(path: str, box: StaticBox, material: MeshPhongMaterial) -> Iterator[Any]:
+    yield SetObject(Box(list(box.size_m)), material, _path(path))
+    yield SetTransform(_shift(box.centre_m), _path(path))
+
+
+def _shift(offset_m: Vec3) -> Floats:
+    T = np.eye(4)
+    T[:3, 3] = offset_m
+    return T
