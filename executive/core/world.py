@@ -46,6 +46,10 @@ class Cell(Protocol):
         """Bring every moving thing to rest, in order; safe to call at any time."""
         ...
 
+    def emergency_stop(self) -> None:
+        """Stop every moving thing as fast as its brakes allow; safe to call at any time."""
+        ...
+
     def close(self) -> None:
         """Release devices; called once, last."""
         ...

@@ -1,0 +1,1 @@
+"""The flight recorder: every run is one MCAP file that any MCAP viewer opens."""

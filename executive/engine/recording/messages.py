@@ -1,0 +1,139 @@
+"""The messages of a recording as models: their JSON schemas go into the file itself.
+
+Times are those of the cell's clock, so that two runs with one seed differ only in
+`started_utc`, in durations and in `wall_s`.
+"""
+
+from typing import Literal
+
+from pydantic import BaseModel, ConfigDict, Field, JsonValue
+
+from executive.engine.blackboard import Write
+from executive.engine.rate import RateReport
+from executive.engine.ticks import Halt, LeafOutcome, NodeFault, NodeStatus
+
+KEYFRAME_EVERY = 256
+
+MISSION_TOPIC = "/mission"
+TICKS_TOPIC = "/ticks"
+IMAGES_TOPIC = "/images"
+RESULT_TOPIC = "/result"
+
+
+class _Message(BaseModel):
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+
+class SourceFile(_Message):
+    """A document that the mission was built from."""
+
+    file: str
+    sha256: str
+    text: str
+
+
+class RecordedNode(_Message):
+    """One node of the tree; its index is its place in the table."""
+
+    path: str
+    name: str
+    kind: str
+    type: str
+    parent: int | None
+    file: str
+    line: int
+    acts: bool = False
+
+
+class MissionHeader(_Message):
+    """The first message: what is run, from which files, with what."""
+
+    format: Literal[1]
+    mission: str
+    about: str = ""
+    seed: int
+    tick_hz: float
+    timeout_s: float | None
+    inputs: dict[str, JsonValue] = Field(default_factory=dict)
+    scenario: dict[str, JsonValue] = Field(default_factory=dict)
+    cell: dict[str, JsonValue] = Field(default_factory=dict)
+    sources: tuple[SourceFile, ...] = ()
+    nodes: tuple[RecordedNode, ...]
+    versions: dict[str, str] = Field(default_factory=dict)
+    started_utc: str
+
+
+class Keyframe(_Message):
+    """Everything that is needed to know the state after a tick without reading back further.
+
+    `written` and `ended` name the tick of the last write of each key, and of the last recorded
+    outcome of each leaf.
+    """
+
+    statuses: tuple[NodeStatus, ...]
+    written: dict[str, int]
+    ended: dict[int, int]
+
+
+class TickMessage(_Message):
+    """One tick; what is left out is empty, and `visited` is that of the tick before."""
+
+    tick: int
+    time_s: float
+    duration_s: float
+    visited: tuple[int, ...] | None = None
+    changes: tuple[tuple[int, NodeStatus], ...] = ()
+    halts: tuple[Halt, ...] = ()
+    outcomes: tuple[LeafOutcome, ...] = ()
+    writes: tuple[Write, ...] = ()
+    faults: tuple[NodeFault, ...] = ()
+    keyframe: Keyframe | None = None
+
+
+class ActionReport(_Message):
+    """One activation of a skill that moves something; times on the cell's clock."""
+
+    name: str
+    start_s: float
+    duration_s: float
+    status: Literal["running", "success", "failure", "halted"]
+    reason: str
+
+
+class RunReport(_Message):
+    """What a run came to, as `cellwright run --json` prints it."""
+
+    mission: str
+    seed: int
+    outcome: Literal["success", "failure", "timeout", "aborted", "error"]
+    reason: str
+    claim: JsonValue
+    truth: JsonValue = None
+    sim_s: float
+    wall_s: float
+    ticks: int
+    actions: tuple[ActionReport, ...]
+    recording: str | None
+
+
+class ResultMessage(_Message):
+    """The last message of a run that came to its end."""
+
+    report: RunReport
+    rate: RateReport
+
+
+COMPRESSED_IMAGE_SCHEMA: dict[str, JsonValue] = {
+    "title": "foxglove.CompressedImage",
+    "description": "A compressed image",
+    "type": "object",
+    "properties": {
+        "timestamp": {
+            "type": "object",
+            "properties": {"sec": {"type": "integer"}, "nsec": {"type": "integer"}},
+        },
+        "frame_id": {"type": "string"},
+        "data": {"type": "string", "contentEncoding": "base64"},
+        "format": {"type": "string"},
+    },
+}

@@ -1,0 +1,246 @@
+"""Reads a recording, also one whose writer was killed in the middle."""
+
+import base64
+import json
+import struct
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import BinaryIO
+
+from mcap.exceptions import McapError
+from mcap.reader import McapReader, NonSeekingReader, SeekingReader
+from mcap.records import Channel, Message, Schema
+from pydantic import ValidationError
+from zstandard import ZstdError
+
+from executive.core.errors import RecordingError
+from executive.core.outcome import Reason
+from executive.core.world import StreamMessage
+from executive.engine.recording.messages import (
+    IMAGES_TOPIC,
+    KEYFRAME_EVERY,
+    MISSION_TOPIC,
+    RESULT_TOPIC,
+    TICKS_TOPIC,
+    MissionHeader,
+    ResultMessage,
+    TickMessage,
+)
+from executive.engine.ticks import LeafOutcome, NodeStatus, Tick
+
+_OWN_TOPICS = (MISSION_TOPIC, TICKS_TOPIC, RESULT_TOPIC)
+_BROKEN = (McapError, ZstdError, struct.error, EOFError)
+
+
+@dataclass(frozen=True, slots=True)
+class KeyState:
+    """What the blackboard holds under one key.
+
+    Attributes:
+        value: The value in its JSON form.
+        writer: Path of the node that wrote it.
+        tick: When it was written.
+    """
+
+    value: object
+    writer: str
+    tick: int
+
+
+@dataclass(frozen=True, slots=True)
+class RecordedImage:
+    """An image that was on the blackboard.
+
+    Attributes:
+        number: What values refer to it by.
+        time_s: When it was written, on the cell's clock [s].
+        png: The image as a PNG file.
+    """
+
+    number: int
+    time_s: float
+    png: bytes
+
+
+class Recording:
+    """One recorded run, open for reading.
+
+    Attributes:
+        path: The file.
+        header: What was run.
+        result: What it came to; None when the writer was killed before the end.
+        complete: Whether the file was closed; False after a kill.
+    """
+
+    def __init__(
+        self,
+        path: Path,
+        header: MissionHeader,
+        ticks: Sequence[bytes],
+        result: ResultMessage | None,
+        complete: bool,
+    ) -> None:
+        """Hold what `open` has read."""
+        self.path, self.header, self.result, self.complete = path, header, result, complete
+        self._raw = ticks
+        self._decoded: dict[int, TickMessage] = {}
+
+    @classmethod
+    def open(cls, path: Path) -> "Recording":
+        """Read a recording; what a killed writer left behind is read as far as it goes.
+
+        Raises:
+            RecordingError: There is no such file, or it is no recording of ours.
+        """
+        found: dict[str, list[bytes]] = {topic: [] for topic in _OWN_TOPICS}
+        reading = _Reading(path)
+        for _, channel, message in reading.messages(_OWN_TOPICS):
+            found[channel.topic].append(message.data)
+        if not found[MISSION_TOPIC]:
+            raise _no_recording(path, "no /mission message")
+        try:
+            header = MissionHeader.model_validate_json(found[MISSION_TOPIC][0])
+            results = [ResultMessage.model_validate_json(data) for data in found[RESULT_TOPIC]]
+        except ValidationError as cause:
+            raise _no_recording(path, str(cause.errors()[0]["msg"])) from cause
+        return cls(
+            path, header, found[TICKS_TOPIC], results[-1] if results else None, reading.complete
+        )
+
+    def __len__(self) -> int:
+        """Return the number of tick records, the runner's closing one included."""
+        return len(self._raw)
+
+    def ticks(self) -> Iterator[Tick]:
+        """Return all ticks in order."""
+        return (self.tick(number) for number in range(len(self)))
+
+    def tick(self, number: int) -> Tick:
+        """Return one tick; values are in their JSON form.
+
+        Raises:
+            RecordingError: There is no such tick.
+        """
+        message = self._message(number)
+        visited, back = message.visited, number
+        while visited is None:
+            back -= 1
+            visited = self._message(back).visited
+        return Tick(
+            number=message.tick,
+            time_s=message.time_s,
+            duration_s=message.duration_s,
+            visited=visited,
+            changes=message.changes,
+            halts=message.halts,
+            outcomes=message.outcomes,
+            writes=message.writes,
+            faults=message.faults,
+        )
+
+    def statuses(self, number: int) -> tuple[NodeStatus, ...]:
+        """Return the status of every node after a tick, in the order of the node table."""
+        statuses = [NodeStatus.INVALID] * len(self.header.nodes)
+        for message in self._from_keyframe(number):
+            if message.keyframe is not None:
+                statuses = list(message.keyframe.statuses)
+            for node, status in message.changes:
+                statuses[node] = status
+        return tuple(statuses)
+
+    def blackboard(self, number: int) -> dict[str, KeyState]:
+        """Return what the blackboard held after a tick, by key."""
+        written: dict[str, int] = {}
+        for message in self._from_keyframe(number):
+            if message.keyframe is not None:
+                written.update(message.keyframe.written)
+            written.update((write.key, message.tick) for write in message.writes)
+        return {key: self._key_state(key, tick) for key, tick in sorted(written.items())}
+
+    def outcomes(self, number: int) -> dict[int, LeafOutcome]:
+        """Return how each leaf ended last, up to a tick, by index."""
+        ended: dict[int, int] = {}
+        for message in self._from_keyframe(number):
+            if message.keyframe is not None:
+                ended.update(message.keyframe.ended)
+            ended.update((outcome.node, message.tick) for outcome in message.outcomes)
+        return {node: self._outcome(node, tick) for node, tick in sorted(ended.items())}
+
+    def reasons(self, number: int) -> dict[int, Reason]:
+        """Return why each leaf that ended in failure last did so, up to a tick, by index."""
+        outcomes = self.outcomes(number)
+        return {node: end.reason for node, end in outcomes.items() if end.reason is not None}
+
+    def images(self) -> Iterator[RecordedImage]:
+        """Return the images in the order in which they were written."""
+        for _, _, message in _Reading(self.path).messages((IMAGES_TOPIC,)):
+            png = base64.b64decode(json.loads(message.data)["data"])
+            yield RecordedImage(message.sequence, message.log_time / 1e9, png)
+
+    def streams(self) -> Iterator[StreamMessage]:
+        """Return what the cell streamed, in the order of time."""
+        for schema, channel, message in _Reading(self.path).messages(None):
+            if channel.topic not in (*_OWN_TOPICS, IMAGES_TOPIC):
+                name = "" if schema is None else schema.name
+                yield StreamMessage(channel.topic, name, message.log_time / 1e9, message.data)
+
+    def _from_keyframe(self, number: int) -> Iterator[TickMessage]:
+        first = number - number % KEYFRAME_EVERY
+        return (self._message(back) for back in range(first, number + 1))
+
+    def _key_state(self, key: str, tick: int) -> KeyState:
+        write = next(w for w in reversed(self._message(tick).writes) if w.key == key)
+        return KeyState(write.value, write.writer, tick)
+
+    def _outcome(self, node: int, tick: int) -> LeafOutcome:
+        return next(end for end in self._message(tick).outcomes if end.node == node)
+
+    def _message(self, number: int) -> TickMessage:
+        if not 0 <= number < len(self._raw):
+            raise RecordingError(
+                f"{self.path}: no tick {number}; expected 0 to {len(self._raw) - 1}"
+            )
+        if number not in self._decoded:
+            self._decoded[number] = TickMessage.model_validate_json(self._raw[number])
+        return self._decoded[number]
+
+
+class _Reading:
+    """One pass over a file."""
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+        self.complete = False
+
+    def messages(
+        self, topics: Sequence[str] | None
+    ) -> Iterator[tuple[Schema | None, Channel, Message]]:
+        """Return messages in file order, up to where the file is broken."""
+        try:
+            with self._path.open("rb") as file:
+                yield from _reader_of(file).iter_messages(topics, log_time_order=False)
+            self.complete = True
+        except OSError as cause:
+            raise _no_recording(self._path, cause.strerror or str(cause)) from cause
+        except _BROKEN:
+            return
+
+
+def _reader_of(file: BinaryIO) -> McapReader:
+    """Return a reader that uses the index, or one that does without when it is missing."""
+    try:
+        reader = SeekingReader(file)
+        if reader.get_summary() is not None:
+            return reader
+    except _BROKEN:
+        pass
+    file.seek(0)
+    return NonSeekingReader(file)
+
+
+def _no_recording(path: Path, got: str) -> RecordingError:
+    return RecordingError(
+        f"{path}: not a readable recording; got {got}; expected an MCAP file written by "
+        "cellwright run; try a file of the runs folder"
+    )

@@ -1,0 +1,222 @@
+"""Writes a run to an MCAP file while it happens.
+
+What a tick decided is on its way to the disk when the tick's record has been taken, so a
+process that is killed loses at most the ticks of the last `FLUSH_S` seconds in which nothing
+was decided: no leaf ended, no key was written, no node was halted or raised.
+"""
+
+import base64
+import io
+import json
+import time
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
+from types import TracebackType
+from typing import Self
+
+import numpy as np
+from mcap.writer import CompressionType, Writer
+from numpy.typing import NDArray
+from pydantic import BaseModel
+
+from executive.core.errors import RecordingError
+from executive.core.outcome import Reason
+from executive.core.world import StreamMessage
+from executive.engine.blackboard import Write
+from executive.engine.recording.messages import (
+    COMPRESSED_IMAGE_SCHEMA,
+    IMAGES_TOPIC,
+    KEYFRAME_EVERY,
+    MISSION_TOPIC,
+    RESULT_TOPIC,
+    TICKS_TOPIC,
+    Keyframe,
+    MissionHeader,
+    ResultMessage,
+    TickMessage,
+)
+from executive.engine.recording.values import ValueEncoder, array_hash
+from executive.engine.ticks import LeafOutcome, NodeStatus, Tick
+
+FLUSH_S = 0.5
+CHUNK_BYTES = 256 * 1024
+
+
+class RecordingWriter:
+    """One recording being written; an observer of a run.
+
+    Raises:
+        RecordingError: From any method, when the file cannot be written.
+    """
+
+    def __init__(self, path: Path, header: MissionHeader) -> None:
+        """Create the file and write what is known before the first tick.
+
+        Args:
+            path: The file; its folder is made, and a file that is there is replaced.
+            header: What is going to run.
+        """
+        self.path = path
+        self._channels: dict[tuple[str, str], int] = {}
+        self._schemas: dict[str, int] = {}
+        self._images: dict[str, int] = {}
+        self._encoder = ValueEncoder(self._store_image)
+        self._statuses = [NodeStatus.INVALID] * len(header.nodes)
+        self._written: dict[str, int] = {}
+        self._ended: dict[int, int] = {}
+        self._visited: tuple[int, ...] | None = None
+        self._time_s, self._flushed_s = 0.0, time.monotonic()
+        with self._guarded():
+            path.parent.mkdir(parents=True, exist_ok=True)
+            self._file = path.open("wb")
+            self._mcap = Writer(
+                self._file, chunk_size=CHUNK_BYTES, compression=CompressionType.ZSTD
+            )
+            self._mcap.start(profile="cellwright", library="cellwright")
+            self._write_model(MISSION_TOPIC, header)
+            self._flush()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.close()
+
+    def on_tick(self, tick: Tick) -> None:
+        """Write one tick, with the images that it put on the blackboard."""
+        self._time_s = tick.time_s
+        with self._guarded():
+            self._write_model(TICKS_TOPIC, self._tick_message(tick), sequence=tick.number)
+            decided = tick.outcomes or tick.writes or tick.halts or tick.faults
+            if decided or time.monotonic() - self._flushed_s > FLUSH_S:
+                self._flush()
+
+    def on_streams(self, messages: Sequence[StreamMessage]) -> None:
+        """Write what the cell streamed."""
+        with self._guarded():
+            for message in messages:
+                channel = self._channel(message.topic, message.schema, {"type": "object"})
+                self._add(channel, message.data, message.time_s)
+
+    def write_result(self, result: ResultMessage) -> None:
+        """Write what the run came to."""
+        with self._guarded():
+            self._write_model(RESULT_TOPIC, result)
+
+    def close(self) -> None:
+        """Write the index and close the file; closing twice does nothing."""
+        if not self._file.closed:
+            with self._guarded(), self._file:
+                self._mcap.finish()
+
+    def _tick_message(self, tick: Tick) -> TickMessage:
+        for node, status in tick.changes:
+            self._statuses[node] = status
+        self._written.update((write.key, tick.number) for write in tick.writes)
+        self._ended.update((outcome.node, tick.number) for outcome in tick.outcomes)
+        keyframe = None
+        if tick.number % KEYFRAME_EVERY == 0:
+            keyframe = Keyframe(
+                statuses=tuple(self._statuses), written=self._written, ended=self._ended
+            )
+        same = keyframe is None and tick.visited == self._visited
+        self._visited = tick.visited
+        return TickMessage(
+            tick=tick.number,
+            time_s=tick.time_s,
+            duration_s=tick.duration_s,
+            visited=None if same else tick.visited,
+            changes=tick.changes,
+            halts=tick.halts,
+            outcomes=tuple(self._encoded_outcome(outcome) for outcome in tick.outcomes),
+            writes=tuple(self._encoded_write(write) for write in tick.writes),
+            faults=tick.faults,
+            keyframe=keyframe,
+        )
+
+    def _encoded_outcome(self, outcome: LeafOutcome) -> LeafOutcome:
+        reason = outcome.reason
+        if reason is None:
+            return outcome
+        data = {name: self._encoder.encode(value) for name, value in reason.data.items()}
+        return replace(outcome, reason=Reason(reason.code, reason.text, data))
+
+    def _encoded_write(self, write: Write) -> Write:
+        return replace(write, value=self._encoder.encode(write.value))
+
+    def _store_image(self, image: NDArray[np.uint8]) -> int:
+        """Write an image unless it is there already; return its number."""
+        key = array_hash(image)
+        if key not in self._images:
+            self._images[key] = len(self._images)
+            # In a chunk of its own, so that a reader of ticks need not unpack it.
+            self._flush()
+            self._write_image(self._images[key], image)
+            self._flush()
+        return self._images[key]
+
+    def _write_image(self, number: int, image: NDArray[np.uint8]) -> None:
+        seconds, nanoseconds = divmod(_nanoseconds(self._time_s), 10**9)
+        message = {
+            "timestamp": {"sec": seconds, "nsec": nanoseconds},
+            "frame_id": "",
+            "format": "png",
+            "data": base64.b64encode(_png(image)).decode(),
+        }
+        channel = self._channel(IMAGES_TOPIC, "foxglove.CompressedImage", COMPRESSED_IMAGE_SCHEMA)
+        self._add(channel, json.dumps(message).encode(), self._time_s, number)
+
+    def _write_model(self, topic: str, message: BaseModel, sequence: int = 0) -> None:
+        name = type(message).__name__
+        if (topic, name) not in self._channels:
+            self._channel(topic, name, type(message).model_json_schema())
+        data = message.model_dump_json(exclude_defaults=True).encode()
+        self._add(self._channels[topic, name], data, self._time_s, sequence)
+
+    def _channel(self, topic: str, schema: str, definition: object) -> int:
+        if (topic, schema) not in self._channels:
+            if schema not in self._schemas:
+                text = json.dumps(definition).encode()
+                self._schemas[schema] = self._mcap.register_schema(schema, "jsonschema", text)
+            self._channels[topic, schema] = self._mcap.register_channel(
+                topic, "json", self._schemas[schema]
+            )
+        return self._channels[topic, schema]
+
+    def _add(self, channel: int, data: bytes, time_s: float, sequence: int = 0) -> None:
+        stamp = _nanoseconds(time_s)
+        self._mcap.add_message(channel, stamp, data, stamp, sequence)
+
+    def _flush(self) -> None:
+        self._mcap.flush()
+        self._flushed_s = time.monotonic()
+
+    @contextmanager
+    def _guarded(self) -> Iterator[None]:
+        try:
+            yield
+        except OSError as cause:
+            raise RecordingError(
+                f"{self.path}: cannot write the recording; got {cause}; "
+                "try --record FILE in a folder with space and write permission"
+            ) from cause
+
+
+def _nanoseconds(time_s: float) -> int:
+    return round(time_s * 1e9)
+
+
+def _png(image: NDArray[np.uint8]) -> bytes:
+    from PIL import Image
+
+    buffer = io.BytesIO()
+    # Camera noise does not compress: more effort costs time and gains nothing.
+    Image.fromarray(image).save(buffer, "PNG", compress_level=1)
+    return buffer.getvalue()

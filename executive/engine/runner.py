@@ -1,0 +1,265 @@
+"""Runs a tree on a cell: tick by tick until it has an answer, a deadline or a request to stop.
+
+However a run ends, every running node is stopped once, the cell is brought to rest, and all
+of it is told to the observers; the recorder is one of them.
+"""
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from enum import StrEnum
+from typing import TYPE_CHECKING
+
+from py_trees.behaviour import Behaviour
+
+from executive.core.errors import NodeError
+from executive.core.world import Cell
+from executive.engine.causes import Cause, deciding_leaves
+from executive.engine.control import EmergencyStopped, RunControl
+from executive.engine.probe import TreeProbe
+from executive.engine.rate import Rate, RateReport
+from executive.engine.stopping import each_guarded, stop_running
+from executive.engine.ticks import NodeStatus, RunObserver
+
+if TYPE_CHECKING:
+    from executive.engine.builder import BuiltTree
+
+
+class MissionOutcome(StrEnum):
+    """How a mission ended."""
+
+    SUCCESS = "success"
+    FAILURE = "failure"
+    TIMEOUT = "timeout"
+    ABORTED = "aborted"
+    ERROR = "error"
+
+    @property
+    def exit_code(self) -> int:
+        """Exit code of the command line."""
+        return _EXIT_CODES[self]
+
+
+_EXIT_CODES = {
+    MissionOutcome.SUCCESS: 0,
+    MissionOutcome.FAILURE: 1,
+    MissionOutcome.TIMEOUT: 1,
+    MissionOutcome.ERROR: 3,
+    MissionOutcome.ABORTED: 4,
+}
+
+
+@dataclass(frozen=True, slots=True)
+class RunResult:
+    """What a run came to.
+
+    Attributes:
+        outcome: How it ended.
+        reason: Why, in one line; empty after a success.
+        causes: Leaves that decided the tree's answer; empty unless the tree gave one.
+        ticks: Number of ticks.
+        sim_s: Duration on the cell's clock [s].
+        wall_s: Duration on the machine's clock [s].
+        rate: How well the tick rate was kept.
+        errors: What was raised, the first one first.
+    """
+
+    outcome: MissionOutcome
+    reason: str
+    causes: tuple[Cause, ...]
+    ticks: int
+    sim_s: float
+    wall_s: float
+    rate: RateReport
+    errors: tuple[Exception, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class _Ending:
+    """Why the tick loop was left."""
+
+    outcome: MissionOutcome
+    reason: str = ""
+    causes: tuple[Cause, ...] = ()
+    errors: tuple[Exception, ...] = ()
+
+
+class Runner:
+    """One run of one tree; use it once."""
+
+    def __init__(
+        self,
+        tree: "BuiltTree",
+        cell: Cell,
+        *,
+        tick_hz: float,
+        timeout_s: float | None = None,
+        observers: Sequence[RunObserver] = (),
+        control: RunControl | None = None,
+    ) -> None:
+        """Prepare a run; nothing moves yet.
+
+        Args:
+            tree: The tree; it has not been ticked.
+            cell: Where it runs.
+            tick_hz: Ticks a second of the cell's clock.
+            timeout_s: Longest duration on the cell's clock [s], pauses not counted.
+            observers: Told of every tick; one that raises ends the run.
+            control: How to pause and stop it.
+        """
+        self._tree, self._cell, self._clock = tree, cell, cell.clock
+        self._timeout_s = timeout_s
+        self._observers = tuple(observers)
+        self.control = control or RunControl()
+        self._probe = TreeProbe(tree)
+        self._start_s = self._clock.now_s()
+        self._rate = Rate(tick_hz, self._start_s)
+        self._number = 0
+
+    def run(self) -> RunResult:
+        """Tick until the mission ends, whatever ends it; then stop everything.
+
+        Returns:
+            How it ended. Nothing that a node, the cell or an observer raises gets out.
+        """
+        wall_start_s = time.perf_counter()
+        ending = self._ending()
+        ended_s = self._clock.now_s()
+        errors = ending.errors + self._stop_everything()
+        if errors and not ending.errors and ending.outcome is not MissionOutcome.ABORTED:
+            ending = replace(ending, outcome=MissionOutcome.ERROR, reason=one_line(errors[0]))
+        return RunResult(
+            outcome=ending.outcome,
+            reason=ending.reason,
+            causes=ending.causes,
+            ticks=self._number,
+            sim_s=ended_s - self._start_s,
+            wall_s=time.perf_counter() - wall_start_s,
+            rate=self._rate.report(),
+            errors=errors,
+        )
+
+    def _ending(self) -> _Ending:
+        try:
+            errors = self._each_node(lambda node: node.setup())
+            return _broken(*errors) if errors else self._tick_until_the_end()
+        except (EmergencyStopped, KeyboardInterrupt):
+            return self._stopped_by_the_user()
+        except Exception as cause:  # the cell, the clock or an observer: arms must still stop
+            return _broken(cause)
+
+    def _tick_until_the_end(self) -> _Ending:
+        while True:
+            self._wait_while_paused()
+            ending = self._interrupted() or self._tick()
+            if ending is not None:
+                return ending
+            with self.control.interruptible():
+                self._clock.sleep_until(self._rate.next_due_s(self._clock.now_s()))
+            self._tell_streams()
+
+    def _tick(self) -> _Ending | None:
+        now_s = self._clock.now_s()
+        with self.control.interruptible():
+            tick, error = self._probe.tick(self._number, now_s)
+        self._number += 1
+        self._rate.ticked(now_s, tick.duration_s)
+        for observer in self._observers:
+            observer.on_tick(tick)
+        return _broken(error) if error is not None else self._answer()
+
+    def _answer(self) -> _Ending | None:
+        answer = self._probe.answer
+        if answer is NodeStatus.RUNNING:
+            return None
+        causes = deciding_leaves(self._tree.nodes, self._probe.answers, self._probe.reasons)
+        if answer is NodeStatus.SUCCESS:
+            return _Ending(MissionOutcome.SUCCESS, causes=causes)
+        return _Ending(MissionOutcome.FAILURE, str(causes[-1]), causes)
+
+    def _interrupted(self) -> _Ending | None:
+        if self.control.stop_reason:
+            return self._stopped_by_the_user()
+        if self._timeout_s is None or self._running_s() < self._timeout_s:
+            return None
+        reason = f"mission timeout of {self._timeout_s:g} s passed {self._where()}"
+        return _Ending(MissionOutcome.TIMEOUT, reason)
+
+    def _running_s(self) -> float:
+        return self._clock.now_s() - self._start_s - self._rate.paused_s
+
+    def _stopped_by_the_user(self) -> _Ending:
+        how = "emergency stop" if self.control.emergency else "stopped"
+        who = self.control.stop_reason or "KeyboardInterrupt"
+        return _Ending(MissionOutcome.ABORTED, f"{how} by {who} {self._where()}")
+
+    def _where(self) -> str:
+        """Return which leaves run now, for a message."""
+        running = [
+            info.path
+            for info in self._tree.nodes
+            if info.behaviour.status.name == NodeStatus.RUNNING and not info.behaviour.children
+        ]
+        return f"in {', '.join(running)}" if running else "before the first tick"
+
+    def _wait_while_paused(self) -> None:
+        began_s = self._clock.now_s()
+        if self.control.wait_while_paused():
+            self._rate.skip(self._clock.now_s() - began_s)
+
+    def _stop_everything(self) -> tuple[Exception, ...]:
+        """Stop nodes and cell, and tell the observers; return everything that was raised."""
+        cell_errors: list[Exception] = []
+        if self.control.emergency:
+            cell_errors += _raised_by(self._cell.emergency_stop)
+        stopped = stop_running(self._tree.root, self._probe.raised, self._error_of)
+        cell_errors += _raised_by(self._stop_cell)
+        shut_down = self._each_node(lambda node: node.shutdown())
+        node_errors = stopped + shut_down
+        told = _raised_by(lambda: self._tell_end(node_errors))
+        return (*node_errors, *cell_errors, *told)
+
+    def _stop_cell(self) -> None:
+        try:
+            with self.control.interruptible():
+                self._cell.stop()
+        except EmergencyStopped:
+            self._cell.emergency_stop()
+
+    def _tell_end(self, errors: Sequence[NodeError]) -> None:
+        end = self._probe.record_end(self._number, self._clock.now_s(), errors)
+        if end.changes or end.writes or end.faults:
+            for observer in self._observers:
+                observer.on_tick(end)
+        self._tell_streams()
+
+    def _tell_streams(self) -> None:
+        messages = tuple(self._cell.drain_streams())
+        for observer in self._observers:
+            observer.on_streams(messages)
+
+    def _each_node(self, act: Callable[[Behaviour], None]) -> list[NodeError]:
+        return each_guarded(self._tree.root.iterate(), act, self._error_of)
+
+    def _error_of(self, behaviour: Behaviour, cause: Exception) -> NodeError:
+        return self._probe.error_of(behaviour, self._number, cause)
+
+
+def one_line(error: Exception) -> str:
+    """Return the message of an exception, with its type unless it is one of ours."""
+    text = str(error) if isinstance(error, NodeError) else f"{type(error).__name__}: {error}"
+    return " ".join(text.split())
+
+
+def _broken(*errors: Exception) -> _Ending:
+    return _Ending(
+        MissionOutcome.ERROR, "; ".join(one_line(error) for error in errors), errors=errors
+    )
+
+
+def _raised_by(act: Callable[[], None]) -> list[Exception]:
+    try:
+        act()
+    except Exception as cause:  # what follows must still be done
+        return [cause]
+    return []
