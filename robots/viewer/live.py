@@ -83,7 +83,9 @@ class LiveViewer:
         atexit.unregister(self.close)
         self._context.destroy(linger=0)
         self._server.kill()
-        self._server.communicate()
+        self._server.wait()
+        if self._server.stdout is not None:
+            self._server.stdout.close()
 
     def _announced(self, name: str) -> str:
         """Return an address that the server prints when it starts."""
