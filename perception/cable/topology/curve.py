@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from perception.cable.topology.diagram import Diagram, compact
+from perception.cable.topology.diagram import Diagram
 
 Floats = NDArray[np.float64]
 
@@ -108,21 +108,22 @@ def curve_crossings(nodes: Floats) -> Strand:
 
 
 def close_over(strand: Strand) -> Diagram:
-    """Return the diagram of an open curve closed by a chord over everything."""
+    """Return the diagram of an open curve closed by a chord over everything.
+
+    Crossings keep their numbers; those of the chord are numbered after them.
+    """
     visits: list[tuple[float, int, bool]] = []
-    sign_of: dict[int, int] = {}
+    signs: list[int] = []
     for number, crossing in enumerate(strand.crossings):
         visits.append((crossing.first, number, crossing.first_over))
         visits.append((crossing.second, number, not crossing.first_over))
-        sign_of[number] = crossing.turn if crossing.first_over else -crossing.turn
+        signs.append(crossing.turn if crossing.first_over else -crossing.turn)
     last = len(strand.points) - 1
-    chord = strand.points[[-1, 0]]
-    on_chord, on_curve, turn = intersections(chord, strand.points)
+    on_chord, on_curve, turn = intersections(strand.points[[-1, 0]], strand.points)
     inside = (on_curve >= 1.0) & (on_curve <= last - 1.0)
-    chord_hits = zip(on_chord[inside], on_curve[inside], turn[inside], strict=True)
-    for number, (s, position, t) in enumerate(chord_hits, start=len(strand.crossings)):
-        visits.append((last + 1.0 + float(s), number, True))
-        visits.append((float(position), number, False))
-        sign_of[number] = int(t)
+    for s, position, t in zip(on_chord[inside], on_curve[inside], turn[inside], strict=True):
+        visits.append((last + 1.0 + float(s), len(signs), True))
+        visits.append((float(position), len(signs), False))
+        signs.append(int(t))
     visits.sort()
-    return compact([v[1] for v in visits], [v[2] for v in visits], sign_of)
+    return Diagram(tuple(v[1] for v in visits), tuple(v[2] for v in visits), tuple(signs))

@@ -1,0 +1,162 @@
+"""Which pixels show cable: bright, thin things on a darker cloth.
+
+Nothing here is an absolute grey value. The cloth is estimated by an opening that no cable
+survives; what rises above it is measured against the image's own noise and the cable's own
+contrast. Wide bright things (arms, hands, furniture) survive the opening and are clutter.
+"""
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from perception.camera import GreyImage
+
+Bools = NDArray[np.bool_]
+Floats32 = NDArray[np.float32]
+
+
+@dataclass(frozen=True, slots=True)
+class MaskConfig:
+    """Settings of the cable mask.
+
+    Attributes:
+        smoothing_px: Standard deviation of the noise filter.
+        widest_px: Things wider than this are clutter.
+        noise_factor: How many standard deviations of noise the cable must rise above.
+        low_contrast: Share of the cable's contrast at which its border lies.
+        high_contrast: Share that each piece must reach somewhere.
+        clutter_contrast: Share of the cable's contrast at which wide things are clutter.
+        clutter_margin_px: Clutter is widened by this.
+        shortest_widths: Pieces shorter than this many cable widths are dropped.
+    """
+
+    smoothing_px: float = 0.8
+    widest_px: int = 44
+    noise_factor: float = 6.0
+    low_contrast: float = 0.32
+    high_contrast: float = 0.55
+    clutter_contrast: float = 0.4
+    clutter_margin_px: int = 14
+    shortest_widths: float = 6.0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CableMask:
+    """Cable pixels of one image.
+
+    Attributes:
+        cable: Whether a pixel shows cable or connector, shape (height, width).
+        clutter: Whether it shows something else that may hide cable, same shape.
+        radius_px: Distance of each cable pixel to the nearest other pixel, same shape.
+        width_px: Width of the cable.
+        contrast: How much brighter than the cloth the cable is.
+        noise: Standard deviation of the smoothed cloth.
+    """
+
+    cable: Bools
+    clutter: Bools
+    radius_px: Floats32
+    width_px: float
+    contrast: float
+    noise: float
+
+
+def find_mask(image: GreyImage, config: MaskConfig | None = None) -> CableMask | None:
+    """Return the cable mask of a grey image; None where nothing rises above the noise."""
+    config = config or MaskConfig()
+    smooth = _floats(cv2.GaussianBlur(image.astype(np.float32), (0, 0), config.smoothing_px))
+    background = _background(smooth, config.widest_px)
+    rise = smooth - background
+    noise = _noise(rise)
+    contrast = _contrast(rise, config.noise_factor * noise)
+    if contrast is None:
+        return None
+    clutter = _clutter(background, contrast, config)
+    low = max(config.noise_factor * noise, config.low_contrast * contrast)
+    high = max(config.noise_factor * noise, config.high_contrast * contrast)
+    cable = _hysteresis(rise, low, high) & ~clutter
+    radius_px = _radius(cable)
+    return _keep_cable(CableMask(cable, clutter, radius_px, 0.0, contrast, noise), config)
+
+
+def _background(smooth: Floats32, widest_px: int) -> Floats32:
+    """Open at a quarter of the size, where a large disc is cheap."""
+    small = cv2.resize(smooth, None, fx=0.25, fy=0.25, interpolation=cv2.INTER_AREA)
+    diameter = widest_px // 4
+    disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (diameter, diameter))
+    opened = cv2.morphologyEx(small, cv2.MORPH_OPEN, disc, borderType=cv2.BORDER_REPLICATE)
+    height, width = smooth.shape
+    return _floats(cv2.resize(opened, (width, height), interpolation=cv2.INTER_LINEAR))
+
+
+def _floats(array: cv2.typing.MatLike) -> Floats32:
+    return np.asarray(array, dtype=np.float32)
+
+
+def _noise(rise: Floats32) -> float:
+    """Return the standard deviation of the cloth from the spread of the middle half."""
+    low, high = np.percentile(rise[::4, ::4], [25, 75])
+    return max(float(high - low) / 1.349, 0.5)
+
+
+def _contrast(rise: Floats32, floor: float) -> float | None:
+    """Return a typical rise of the cable's own pixels; None where nothing rises."""
+    risen = rise[rise > floor]
+    if len(risen) < 0.0002 * rise.size:
+        return None
+    # Half of what rises above the noise is blurred border; the upper half is cable.
+    return float(np.median(risen[risen > np.median(risen)]))
+
+
+def _clutter(background: Floats32, contrast: float, config: MaskConfig) -> Bools:
+    table = float(np.median(background))
+    wide = (background > table + config.clutter_contrast * contrast).astype(np.uint8)
+    size = 2 * config.clutter_margin_px + 1
+    grown = cv2.dilate(wide, np.ones((size, size), np.uint8))
+    clutter: Bools = grown.astype(bool)
+    return clutter
+
+
+def _hysteresis(rise: Floats32, low: float, high: float) -> Bools:
+    """Return pieces above `low` that reach `high` somewhere."""
+    count, labels = cv2.connectedComponents((rise > low).astype(np.uint8))
+    reached = np.zeros(count, dtype=bool)
+    reached[labels[rise > high]] = True
+    reached[0] = False
+    pieces: Bools = reached[labels]
+    return pieces
+
+
+def _radius(cable: Bools) -> Floats32:
+    return _floats(cv2.distanceTransform(cable.astype(np.uint8), cv2.DIST_L2, 3))
+
+
+def _keep_cable(found: CableMask, config: MaskConfig) -> CableMask | None:
+    """Drop pieces that are too short or not as wide as the cable."""
+    count, *tables = cv2.connectedComponentsWithStats(found.cable.astype(np.uint8))
+    if count < 2:
+        return None
+    labels, stats = (np.asarray(table, dtype=np.int32) for table in tables[:2])
+    areas = stats[1:, cv2.CC_STAT_AREA].astype(float)
+    widths = np.array([_piece_width(found.radius_px, labels, stats[k], k) for k in range(1, count)])
+    width_px = float(widths[np.argmax(areas / widths)])
+    lengths = areas / widths
+    keep = (lengths > config.shortest_widths * width_px) & (widths < 2.2 * width_px)
+    cable = np.concatenate([[False], keep])[labels]
+    if not cable.any():
+        return None
+    radius_px = np.where(cable, found.radius_px, np.float32(0.0))
+    return CableMask(cable, found.clutter, radius_px, width_px, found.contrast, found.noise)
+
+
+def _piece_width(
+    radius_px: Floats32, labels: NDArray[np.int32], stats: NDArray[np.int32], label: int
+) -> float:
+    """Return the width of one piece: for a strip of width w, the mean radius is w / 4."""
+    x, y, width, height = stats[:4]
+    window = (slice(y, y + height), slice(x, x + width))
+    radii = radius_px[window][labels[window] == label]
+    # A median of the inner half is not moved by connectors and crossings.
+    return max(4.0 * float(np.median(radii)) - 1.0, 1.0)

@@ -1,0 +1,42 @@
+"""One image looked at once: mask and skeleton graph, which most steps start from."""
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+
+from perception.cable.graph import SkeletonGraph, build_graph
+from perception.cable.mask import CableMask, MaskConfig, find_mask
+from perception.camera import GreyImage
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Observation:
+    """What is seen of cables in one image.
+
+    Attributes:
+        mask: Cable pixels.
+        graph: Their centre lines.
+    """
+
+    mask: CableMask
+    graph: SkeletonGraph
+
+
+def observe(image: GreyImage, config: MaskConfig | None = None) -> Observation | None:
+    """Return mask and graph of an image; None where no cable is seen.
+
+    The steps of perception ask one after the other about the same image, so the last answers
+    are kept; they depend on nothing but the pixels and the settings.
+    """
+    return _observe(image.tobytes(), image.shape, config or MaskConfig())
+
+
+@lru_cache(maxsize=2)
+def _observe(pixels: bytes, shape: tuple[int, int], config: MaskConfig) -> Observation | None:
+    image = np.frombuffer(pixels, dtype=np.uint8).reshape(shape)
+    mask = find_mask(image, config)
+    if mask is None:
+        return None
+    graph = build_graph(mask)
+    return Observation(mask, graph) if graph.edges else None

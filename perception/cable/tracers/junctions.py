@@ -1,0 +1,272 @@
+"""Where strands meet in a skeleton, and the ways in which they may go on there.
+
+A cable passes a crossing twice, so a graph of cables has an even number of arms at every
+node. A skeleton often tears a crossing into two forks with a short bridge between them; both
+strands run over the bridge. Which edges are such bridges is the postman's problem: double
+the cheapest edges that leave no node odd. What stays odd is an end that lies on a strand.
+"""
+
+import itertools
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import networkx as nx
+import numpy as np
+
+from perception.cable.graph import Arm, Edge, SkeletonGraph
+from perception.cable.types import Points
+
+
+@dataclass(frozen=True, slots=True)
+class JunctionConfig:
+    """Settings of how strands may go on; lengths in cable widths, costs in nats.
+
+    Attributes:
+        spur_widths: A dead end shorter than this is no strand.
+        bridge_widths: Longest bridge of single width.
+        thick_bridge_widths: Longest bridge that is as thick as two strands.
+        thick_ratio: From here on an edge is thick, as a multiple of the usual radius.
+        near_widths: Where on an arm its direction is measured from.
+        far_widths: And to where.
+        bend_rad: Standard deviation of a strand's turn within a junction.
+        loose_cost: Cost of a strand that ends at a junction.
+        hairpin_cost: Cost of a strand that turns back where two strands merge.
+        most_arms: Nodes with more arms are paired greedily.
+    """
+
+    spur_widths: float = 1.5
+    bridge_widths: float = 3.5
+    thick_bridge_widths: float = 12.0
+    thick_ratio: float = 1.25
+    near_widths: float = 0.8
+    far_widths: float = 3.2
+    bend_rad: float = 0.35
+    loose_cost: float = 7.0
+    hairpin_cost: float = 2.0
+    most_arms: int = 8
+
+
+@dataclass(frozen=True, slots=True)
+class Option:
+    """One way in which the strands of a junction go on.
+
+    Attributes:
+        cost: Negative logarithm of its likelihood, up to a constant.
+        pairs: Arms that belong together.
+        loose: Arms that end here.
+    """
+
+    cost: float
+    pairs: tuple[tuple[Arm, Arm], ...]
+    loose: tuple[Arm, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Junction:
+    """Nodes of the graph that are one place on the table.
+
+    Attributes:
+        nodes: Numbers of the nodes.
+        arms: Ends of edges that leave it.
+        options: Ways to go on, cheapest first.
+    """
+
+    nodes: tuple[int, ...]
+    arms: tuple[Arm, ...]
+    options: tuple[Option, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Junctions:
+    """All junctions of a graph.
+
+    Attributes:
+        all: The junctions.
+        bridges: Edges that two strands run over.
+        spurs: Edges that are no strand.
+    """
+
+    all: tuple[Junction, ...]
+    bridges: frozenset[int]
+    spurs: frozenset[int]
+
+
+def usual_radius(graph: SkeletonGraph) -> float:
+    """Return the radius of a single strand: the median along all edges."""
+    return float(np.median(np.concatenate([edge.radius_px for edge in graph.edges])))
+
+
+def find_junctions(
+    graph: SkeletonGraph, width_px: float, config: JunctionConfig | None = None
+) -> Junctions:
+    """Return the junctions of a graph with the ways in which strands go on."""
+    config = config or JunctionConfig()
+    radius_px = usual_radius(graph)
+    thick = {
+        number: float(np.median(edge.radius_px)) > config.thick_ratio * radius_px
+        for number, edge in enumerate(graph.edges)
+    }
+    spurs = _spurs(graph, config.spur_widths * width_px)
+    bridges = _bridges(graph, spurs, thick, width_px, config)
+    maker = _OptionMaker(graph, thick, width_px, config)
+    junctions = []
+    for nodes in _groups(graph, bridges):
+        arms = tuple(
+            arm for node in nodes for arm in graph.arms[node] if arm[0] not in bridges | spurs
+        )
+        if arms:
+            junctions.append(Junction(nodes, arms, maker.options(arms)))
+    return Junctions(tuple(junctions), bridges, spurs)
+
+
+def _spurs(graph: SkeletonGraph, longest_px: float) -> frozenset[int]:
+    """Return short dead ends that hang on a fork."""
+    return frozenset(
+        number
+        for number, edge in enumerate(graph.edges)
+        if edge.length_px < longest_px
+        and sorted(min(len(graph.arms[node]), 2) for node in edge.nodes) == [1, 2]
+    )
+
+
+def _bridges(
+    graph: SkeletonGraph,
+    spurs: frozenset[int],
+    thick: dict[int, bool],
+    width_px: float,
+    config: JunctionConfig,
+) -> frozenset[int]:
+    """Return the edges to double so that as few nodes as possible stay odd."""
+    roads: nx.Graph[int] = nx.Graph()
+    for number, edge in enumerate(graph.edges):
+        longest = config.thick_bridge_widths if thick[number] else config.bridge_widths
+        share = edge.length_px / (longest * width_px)
+        a, b = edge.nodes
+        inner = len(graph.arms[a]) > 1 and len(graph.arms[b]) > 1 and a != b
+        known = roads.get_edge_data(a, b, {"weight": math.inf})
+        if inner and share < min(1.0, known["weight"]):
+            roads.add_edge(a, b, weight=share, number=number)
+    odd = [
+        node
+        for node, arms in enumerate(graph.arms)
+        if node in roads and sum(arm[0] not in spurs for arm in arms) % 2
+    ]
+    return _postman(roads, odd)
+
+
+def _postman(roads: "nx.Graph[int]", odd: list[int]) -> frozenset[int]:
+    """Return the edges of cheapest ways between pairs of odd nodes, each below 1 in all."""
+    wishes: nx.Graph[int] = nx.Graph()
+    ways: dict[tuple[int, int], list[int]] = {}
+    for a in odd:
+        lengths, paths = nx.single_source_dijkstra(roads, a, cutoff=1.0)
+        for b in odd:
+            if a < b and b in lengths:
+                wishes.add_edge(a, b, weight=1.0 - lengths[b] + 1e-3)
+                ways[a, b] = paths[b]
+    doubled: set[int] = set()
+    for a, b in sorted(map(sorted, nx.max_weight_matching(wishes))):
+        path = ways[a, b]
+        doubled ^= {roads[u][v]["number"] for u, v in itertools.pairwise(path)}
+    return frozenset(doubled)
+
+
+def _groups(graph: SkeletonGraph, bridges: frozenset[int]) -> list[tuple[int, ...]]:
+    """Return nodes that bridges join, as groups."""
+    joined: nx.Graph[int] = nx.Graph()
+    joined.add_nodes_from(range(len(graph.arms)))
+    joined.add_edges_from(graph.edges[number].nodes for number in bridges)
+    return [tuple(sorted(group)) for group in nx.connected_components(joined)]
+
+
+def arm_ray(edge: Edge, end: int, near_px: float, far_px: float) -> tuple[Points, Points]:
+    """Return a point on an arm near its node, and the unit direction away from the node."""
+    points = edge.from_end(end)
+    along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
+    far = min(far_px, along[-1])
+    near = min(near_px, 0.4 * far)
+    a, b = (np.array([np.interp(s, along, points[:, k]) for k in (0, 1)]) for s in (near, far))
+    return a, (b - a) / max(float(np.linalg.norm(b - a)), 1e-9)
+
+
+def turn_rad(a: Points, b: Points) -> float:
+    """Return the angle between two directions, in [0, pi]."""
+    return abs(math.atan2(a[0] * b[1] - a[1] * b[0], float(a @ b)))
+
+
+class _OptionMaker:
+    """Lists and rates the ways in which the arms of a junction can be paired."""
+
+    def __init__(
+        self,
+        graph: SkeletonGraph,
+        thick: dict[int, bool],
+        width_px: float,
+        config: JunctionConfig,
+    ) -> None:
+        self.graph, self.thick, self.width_px, self.config = graph, thick, width_px, config
+
+    def options(self, arms: tuple[Arm, ...]) -> tuple[Option, ...]:
+        if len(arms) == 1:
+            return (Option(0.0, (), arms),)
+        near_px, far_px = (
+            widths * self.width_px for widths in (self.config.near_widths, self.config.far_widths)
+        )
+        rays = {arm: arm_ray(self.graph.edges[arm[0]], arm[1], near_px, far_px) for arm in arms}
+        tips = [arm for arm in arms if self._is_tip(arm)]
+        costs = {
+            (a, b): self._bend_cost(rays[a], rays[b], bool(tips) and len(arms) == 3)
+            for i, a in enumerate(arms)
+            for b in arms[i + 1 :]
+        }
+        pairings = _pairings(arms) if len(arms) <= self.config.most_arms else [_greedy(arms, costs)]
+        options = []
+        for pairs, loose in pairings:
+            cost = sum(costs[pair] for pair in pairs)
+            cost += sum(0.0 if arm in tips else self.config.loose_cost for arm in loose)
+            options.append(Option(cost, tuple(pairs), tuple(loose)))
+        return tuple(sorted(options, key=lambda option: option.cost))
+
+    def _is_tip(self, arm: Arm) -> bool:
+        """Say whether an arm is the merged end of a narrow bend."""
+        edge = self.graph.edges[arm[0]]
+        dead = len(self.graph.arms[edge.nodes[1 - arm[1]]]) == 1
+        return dead and self.thick[arm[0]] and edge.length_px < 4.0 * self.width_px
+
+    def _bend_cost(
+        self, a: tuple[Points, Points], b: tuple[Points, Points], hairpin: bool
+    ) -> float:
+        chord = b[0] - a[0]
+        first, second = turn_rad(-a[1], chord), turn_rad(chord, b[1])
+        bend = (first**2 + second**2) / (2.0 * self.config.bend_rad**2)
+        return min(bend, self.config.hairpin_cost) if hairpin else bend
+
+
+def _pairings(
+    arms: tuple[Arm, ...],
+) -> Iterator[tuple[list[tuple[Arm, Arm]], list[Arm]]]:
+    """Yield every way to pair arms; one stays alone where their number is odd."""
+    if len(arms) % 2:
+        for k, loose in enumerate(arms):
+            for pairs, _ in _pairings(arms[:k] + arms[k + 1 :]):
+                yield pairs, [loose]
+        return
+    if not arms:
+        yield [], []
+        return
+    for k in range(1, len(arms)):
+        for pairs, _ in _pairings(arms[1:k] + arms[k + 1 :]):
+            yield [(arms[0], arms[k]), *pairs], []
+
+
+def _greedy(
+    arms: tuple[Arm, ...], costs: dict[tuple[Arm, Arm], float]
+) -> tuple[list[tuple[Arm, Arm]], list[Arm]]:
+    """Pair the straightest arms first."""
+    left, pairs = set(arms), []
+    for a, b in sorted(costs, key=lambda pair: costs[pair]):
+        if a in left and b in left:
+            pairs.append((a, b))
+            left -= {a, b}
+    return pairs, sorted(left)

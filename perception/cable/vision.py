@@ -1,0 +1,131 @@
+"""The whole of cable perception, from the image alone and without learned models."""
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+
+from perception.cable.belief import knotted_probability
+from perception.cable.classifiers.continuity import ContinuityClassifier
+from perception.cable.classifiers.edges import EdgeClassifier
+from perception.cable.endpoints import EndpointConfig, find_endpoints
+from perception.cable.grasp_points import GraspConfig
+from perception.cable.interfaces import CrossingClassifier, Tracer
+from perception.cable.knots import find_knots
+from perception.cable.observation import observe
+from perception.cable.tracers.analytic import AnalyticTracer
+from perception.cable.tracers.skeleton import SkeletonTracer
+from perception.cable.types import CableScene, Crossing, Endpoint, Knot, Points, Trace
+from perception.camera import GreyImage
+
+TRACERS: dict[str, Callable[[], Tracer]] = {
+    "skeleton": SkeletonTracer,
+    "analytic": AnalyticTracer,
+}
+CLASSIFIERS: dict[str, Callable[[], CrossingClassifier]] = {
+    "edges": EdgeClassifier,
+    "continuity": ContinuityClassifier,
+}
+
+
+@dataclass(frozen=True, slots=True)
+class ClassicVisionConfig:
+    """Settings of classic cable perception.
+
+    Attributes:
+        tracer: How cables are followed.
+        classifier: How over and under are told apart.
+        start_steps: Steps of the analytic tracer that make the start of a trace.
+        endpoints: The search for ends.
+        grasps: The search for cage and pinch points.
+    """
+
+    tracer: Literal["skeleton", "analytic"] = "skeleton"
+    classifier: Literal["edges", "continuity"] = "edges"
+    start_steps: int = 6
+    endpoints: EndpointConfig = field(default_factory=EndpointConfig)
+    grasps: GraspConfig = field(default_factory=GraspConfig)
+
+
+class ClassicCableVision:
+    """Implements `CableVision` with mask, skeleton, knot theory and two kinds of evidence."""
+
+    def __init__(self, config: ClassicVisionConfig | None = None) -> None:
+        """Build the steps that the settings name."""
+        self._config = config or ClassicVisionConfig()
+        self._tracer = TRACERS[self._config.tracer]()
+        self._classifier = CLASSIFIERS[self._config.classifier]()
+        self._starter = AnalyticTracer()
+
+    def endpoints(self, image: GreyImage) -> tuple[Endpoint, ...]:
+        """Find the ends of cables, the surest first."""
+        observation = observe(image)
+        if observation is None:
+            return ()
+        return find_endpoints(observation.mask, observation.graph, self._config.endpoints)
+
+    def start_points(self, image: GreyImage, endpoint: Endpoint) -> Points | None:
+        """Follow the cable for about 96 px from an end; None when other strands are too near."""
+        return self._starter.steps(
+            image, endpoint.position_px, endpoint.direction, self._config.start_steps
+        )
+
+    def trace(
+        self, image: GreyImage, start_px: Points, endpoints: Sequence[Endpoint]
+    ) -> Trace | None:
+        """Follow one cable; see `Tracer.trace`."""
+        return self._tracer.trace(image, start_px, endpoints)
+
+    def crossings(self, image: GreyImage, traces: Sequence[Trace]) -> tuple[Crossing, ...]:
+        """Classify all crossings; see `CrossingClassifier.classify`."""
+        return self._classifier.classify(image, traces)
+
+    def knots(
+        self, image: GreyImage, traces: Sequence[Trace], crossings: Sequence[Crossing]
+    ) -> tuple[Knot, ...]:
+        """Find knots and where to hold them."""
+        del image  # Grasp points follow from the traces alone.
+        return find_knots(traces, crossings, self._config.grasps)
+
+    def knotted_probability(self, traces: Sequence[Trace], crossings: Sequence[Crossing]) -> float:
+        """Carry the beliefs of traces and crossings to P(knotted)."""
+        return knotted_probability(traces, crossings)
+
+    def scene(self, image: GreyImage, start_px: Points | None = None) -> CableScene:
+        """Do all steps on one image, from a given start or from the ends that are seen."""
+        began_s = time.perf_counter()
+        endpoints = self.endpoints(image)
+        traces = self._traces(image, start_px, endpoints)
+        crossings = self.crossings(image, traces)
+        return CableScene(
+            traces=traces,
+            endpoints=endpoints,
+            crossings=crossings,
+            knots=self.knots(image, traces, crossings),
+            knotted_probability=self.knotted_probability(traces, crossings),
+            seconds=time.perf_counter() - began_s,
+        )
+
+    def _traces(
+        self, image: GreyImage, start_px: Points | None, endpoints: Sequence[Endpoint]
+    ) -> tuple[Trace, ...]:
+        """Trace from the start, or from every end that no trace has come to yet."""
+        if start_px is not None:
+            trace = self.trace(image, start_px, endpoints)
+            return (trace,) if trace is not None else ()
+        traces: list[Trace] = []
+        for endpoint in endpoints:
+            if any(_touches(trace, endpoint) for trace in traces):
+                continue
+            trace = self.trace(image, endpoint.position_px[None], endpoints)
+            if trace is not None:
+                traces.append(trace)
+        return tuple(traces)
+
+
+def _touches(trace: Trace, endpoint: Endpoint) -> bool:
+    """Say whether a trace starts or ends at an endpoint."""
+    gaps = np.linalg.norm(trace.points_px[[0, -1]] - endpoint.position_px, axis=1)
+    return bool(gaps.min() < 15.0)
