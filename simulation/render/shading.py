@@ -1,0 +1,197 @@
+"""How bright what a ray meets is: one lamp with shadows, ambient light, materials; Numba.
+
+The lamp is the projector of a structured-light camera: it stands beside the lens, so that
+strands that lie high throw a shadow to the far side, on the cloth and on strands below them.
+Brightness is linear, 1.0 is the white of the image.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from simulation.render.primitives import Material, Primitives
+from simulation.render.raycast import (
+    Floats,
+    Vector,
+    View,
+    along,
+    capsule_share,
+    dot,
+    eye,
+    image_point,
+    minus,
+    pixel_ray,
+    surface_normal,
+    triple,
+    unit,
+)
+
+Image = NDArray[np.float32]
+
+AMBIENT = 0.42  # share of the light that comes from all around
+_BIAS_M = 0.0015  # how much nearer to the lamp something must be to throw a shadow
+
+_BRAID_PITCH_M = 0.0052  # along the cable, between threads of one winding direction
+_BRAID_STARTS = 4  # threads of one winding direction around the cable
+_BRAID_DEPTH = 0.34
+_THREAD_SPREAD = 0.22  # threads differ in brightness by up to this share
+
+_LIMB_EXPONENT = 1.0  # the sleeve's flanks send little light back to a lens beside the lamp
+
+_BRAID, _METAL, _PAINT = int(Material.BRAID), int(Material.METAL), int(Material.PAINT)
+
+_NEIGHBOURS = np.array([(7, 0), (5, 5), (0, 7), (-5, 5), (-7, 0), (-5, -5), (0, -7), (5, -5)])
+_CREVICE_M = (0.0015, 0.02)  # a neighbour this much nearer to the camera takes ambient light
+_CREVICE_SHARE = 0.75
+
+
+class Lamp(NamedTuple):
+    """A lamp that shines over the table.
+
+    Attributes:
+        seen_from: The view of its shadow map.
+        shadow: Depth of what its light meets first [m], shape (height, width).
+    """
+
+    seen_from: View
+    shadow: Image
+
+
+class Rays(NamedTuple):
+    """What the rays of a view have met.
+
+    Attributes:
+        depth: Depth [m], shape (height, width).
+        owner: Index of the shape, -1 for none, same shape.
+        brightness: Of what they met, same shape.
+    """
+
+    depth: Image
+    owner: NDArray[np.int32]
+    brightness: Image
+
+
+@njit(cache=True)
+def lit(point: Vector, lamp: Lamp) -> float:
+    """Return the share of the lamp that reaches a point: mean of 3 x 3 shadow map lookups."""
+    x, y, z = image_point(lamp.seen_from, point)
+    height, width = lamp.shadow.shape
+    u, v = int(math.floor(x + 0.5)), int(math.floor(y + 0.5))
+    if not (1 <= u < width - 1 and 1 <= v < height - 1):
+        return 1.0
+    free = 0
+    for row in range(v - 1, v + 2):
+        for column in range(u - 1, u + 2):
+            free += lamp.shadow[row, column] > z - _BIAS_M
+    return free / 9.0
+
+
+@njit(cache=True)
+def _thread(number: int) -> float:
+    """Return a fixed pseudo-random number in [-1, 1] for a cell of the braid."""
+    mixed = (number * 2654435761) & 0xFFFFFFFF
+    mixed = ((mixed ^ (mixed >> 15)) * 2246822519) & 0xFFFFFFFF
+    return ((mixed ^ (mixed >> 13)) & 0xFFFF) / 32767.5 - 1.0
+
+
+@njit(cache=True)
+def _braid(arc_m: float, across_rad: float) -> float:
+    """Return the relative brightness of a braided sleeve at an angle from its top."""
+    along_turns = arc_m / _BRAID_PITCH_M
+    around_turns = _BRAID_STARTS * across_rad / (2.0 * math.pi)
+    right, left = along_turns + around_turns, along_turns - around_turns
+    weave = math.cos(2.0 * math.pi * right) * math.cos(2.0 * math.pi * left)
+    cell = int(math.floor(2.0 * right)) * 7919 + int(math.floor(2.0 * left))
+    return 1.0 + _BRAID_DEPTH * weave + _THREAD_SPREAD * _thread(cell)
+
+
+@njit(cache=True)
+def _sleeve(shape: Floats, arc_m: Floats, point: Vector, outward: Vector) -> float:
+    axis = unit(minus(triple(shape, 3), triple(shape, 0)))
+    sideways = outward[0] * axis[1] - outward[1] * axis[0]
+    arc = arc_m[0] + capsule_share(shape, point) * (arc_m[1] - arc_m[0])
+    return _braid(arc, math.atan2(sideways, outward[2]))
+
+
+@njit(cache=True)
+def _openness(depth: Image, v: int, u: int) -> float:
+    """Return how much ambient light reaches a ray's end past what stands right beside it."""
+    height, width = depth.shape
+    hidden = 0
+    for index in range(len(_NEIGHBOURS)):
+        row, column = v + _NEIGHBOURS[index, 1], u + _NEIGHBOURS[index, 0]
+        if 0 <= row < height and 0 <= column < width:
+            step = depth[v, u] - depth[row, column]
+            hidden += _CREVICE_M[0] < step < _CREVICE_M[1]
+    return 1.0 - _CREVICE_SHARE * hidden / len(_NEIGHBOURS)
+
+
+@njit(cache=True)
+def _highlight(material: int, outward: Vector, to_lamp: Vector, to_eye: Vector) -> float:
+    """Return the Blinn-Phong highlight of a glossy material."""
+    facing = max(dot(outward, unit(along(to_lamp, to_eye, 1.0))), 0.0)
+    if material == _METAL:
+        return 0.12 * facing**25.0
+    return 0.35 * facing**40.0 if material == _PAINT else 0.0
+
+
+@njit(cache=True)
+def _brightness(
+    primitives: Primitives, index: int, point: Vector, viewer: Vector, lamp: Lamp, openness: float
+) -> float:
+    shape, material = primitives.shape[index], primitives.material[index]
+    outward = surface_normal(primitives.kind[index], shape, point)
+    to_lamp, to_eye = unit(minus(eye(lamp.seen_from), point)), unit(minus(viewer, point))
+    albedo = primitives.albedo[index]
+    if material == _BRAID:
+        albedo *= _sleeve(shape, primitives.arc_m[index], point, outward)
+        albedo *= max(dot(outward, to_eye), 0.0) ** _LIMB_EXPONENT
+    share = lit(along(point, outward, 0.0005), lamp)
+    sky = 0.5 + 0.5 * max(outward[2], 0.0)
+    diffuse = (1.0 - AMBIENT) * max(dot(outward, to_lamp), 0.0) * share
+    value = albedo * (AMBIENT * sky * openness + diffuse)
+    return value + share * _highlight(material, outward, to_lamp, to_eye)
+
+
+@njit(cache=True)
+def shade(primitives: Primitives, view: View, lamp: Lamp, rays: Rays) -> None:
+    """Write the brightness of every ray that met a shape."""
+    viewer = eye(view)
+    height, width = rays.depth.shape
+    for v in range(height):
+        for u in range(width):
+            index = rays.owner[v, u]
+            if index >= 0:
+                point = along(viewer, pixel_ray(view, u, v), rays.depth[v, u])
+                openness = _openness(rays.depth, v, u)
+                rays.brightness[v, u] = _brightness(
+                    primitives, index, point, viewer, lamp, openness
+                )
+
+
+@njit(cache=True)
+def shade_plane(
+    on_plane: NDArray[np.bool_], view: View, lamp: Lamp, image: Image, depth_m: Image
+) -> None:
+    """Throw shadows on the plane z = 0; depth is unknown where the lamp does not reach.
+
+    Args:
+        on_plane: Where the plane is seen, (height, width).
+        view: Of the image.
+        lamp: What throws the shadows.
+        image: Brightness without shadows; is darkened.
+        depth_m: Distance along the view; is set to NaN in shadows.
+    """
+    viewer = eye(view)
+    height, width = image.shape
+    for v in range(height):
+        for u in range(width):
+            if on_plane[v, u]:
+                ray = pixel_ray(view, u, v)
+                share = lit(along(viewer, ray, -viewer[2] / ray[2]), lamp)
+                image[v, u] *= AMBIENT + (1.0 - AMBIENT) * share
+                if share < 0.5:
+                    depth_m[v, u] = np.nan
