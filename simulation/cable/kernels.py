@@ -166,9 +166,7 @@ def _bend(chain: Chain, constants: Constants, step_s: float, forward: bool) -> N
 
 
 @numba.njit(cache=True)
-def _stretch(
-    chain: Chain, rings: Rings, constants: Constants, step_s: float, steps: int
-) -> None:
+def _stretch(chain: Chain, rings: Rings, constants: Constants, step_s: float, steps: int) -> None:
     """Restore all lengths at once.
 
     Nodes in a grasp move only along the cable here, so that the pull of a hand reaches the
@@ -411,12 +409,7 @@ def _touch_self(chain: Chain, near: Neighbours, constants: Constants) -> None:
         old[0], old[1], old[2] = nx, ny, nz
         if gap >= diameter:
             continue
-        weight = (
-            w[a] * (1.0 - s) ** 2
-            + w[a + 1] * s**2
-            + w[b] * (1.0 - t) ** 2
-            + w[b + 1] * t**2
-        )
+        weight = w[a] * (1.0 - s) ** 2 + w[a + 1] * s**2 + w[b] * (1.0 - t) ** 2 + w[b + 1] * t**2
         push = min(diameter - gap, LARGEST_PUSH_M)
         px, py, pz = push * nx, push * ny, push * nz
         slide = np.empty(3)
@@ -466,9 +459,7 @@ def _touch_obstacles(
             continue
         normal /= gap
         surface = travel[:3] + t * (travel[3:] - travel[:3])
-        slide = (
-            (1.0 - s) * (x[a] - before[a]) + s * (x[a + 1] - before[a + 1]) - surface
-        )
+        slide = (1.0 - s) * (x[a] - before[a]) + s * (x[a + 1] - before[a + 1]) - surface
         push = min(depth, LARGEST_PUSH_M + max(0.0, _dot(surface, normal)))
         slide -= _dot(slide, normal) * normal
         length = np.sqrt(_dot(slide, slide)) + 1e-15

@@ -1,0 +1,222 @@
+"""Starting configurations: a cable with one knot or none, at rest on the table."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from executive.core.errors import InputError
+from perception.cable.topology import Knottedness, StrandCrossing, classify_curve
+from simulation.cable.knots import KNOT_NAMES, TEMPLATES, KnotName
+from simulation.cable.layout import Area, LayoutRules, grow_end
+from simulation.cable.parameters import RodParameters
+from simulation.cable.rod import Rod
+from simulation.cable.truth import centre_line_crossings
+
+Floats = NDArray[np.float64]
+
+
+# What both arms can reach with their grippers pointing down.
+REACHABLE = Area((-0.40, -0.20), (0.40, 0.17))
+
+
+@dataclass(frozen=True, slots=True)
+class ConfigurationRules:
+    """What starting configurations have in common.
+
+    Attributes:
+        length_m: Length of the cable.
+        diameter_m: Smallest and largest size of the knot.
+        place: Between which fractions of the cable's length the knot lies.
+        area: Where the arms reach, and all of the cable lies.
+        most_crossings: Most crossings of the whole cable.
+        shortest_end_m: Least length of a free end.
+    """
+
+    length_m: float = 3.0
+    diameter_m: tuple[float, float] = (0.10, 0.20)
+    place: tuple[float, float] = (0.25, 0.75)
+    area: Area = REACHABLE
+    most_crossings: int = 6
+    shortest_end_m: float = 0.25
+
+
+# Springing back, a cable moves by about this much until it rests.
+SPRING_BACK_M = 0.012
+# How many plans are drawn before giving up: most get stuck, and cost a few hundredths of a second.
+PLANS = 500
+# A cable is at rest when no node is faster than this.
+REST_SPEED_M_S = 0.004
+
+
+def starting_configuration(
+    knot: KnotName,
+    rng: np.random.Generator,
+    parameters: RodParameters | None = None,
+    rules: ConfigurationRules | None = None,
+) -> Floats:
+    """Return a cable at rest with the named knot, both its ends free and in sight.
+
+    Args:
+        knot: Which knot; `none` gives a cable that may cross itself but is not knotted.
+        rng: Source of all randomness: an equal state gives an equal configuration.
+        parameters: What the cable is made of.
+        rules: Where and how it lies.
+
+    Returns:
+        Node positions [m], world frame, shape (N, 3).
+
+    Raises:
+        InputError: The knot is not known, or no configuration was found within the rules.
+    """
+    if knot not in KNOT_NAMES:
+        known = ", ".join(KNOT_NAMES)
+        raise InputError(f"cable.knot: unknown knot; got {knot!r}; expected one of: {known}")
+    parameters, rules = parameters or RodParameters(), rules or ConfigurationRules()
+    for _ in range(PLANS):
+        plan = draw_plan(knot, rng, parameters, rules)
+        if plan is not None and _is_tied(plan, knot):
+            nodes_m = settle(plan, parameters)
+            if _follows(nodes_m, knot, rules):
+                return nodes_m
+    raise InputError(
+        f"cable.knot: no configuration with {knot!r} within the rules; got none in {PLANS} "
+        "plans; try: a shorter cable, a larger area, or more crossings"
+    )
+
+
+def draw_plan(
+    knot: KnotName, rng: np.random.Generator, parameters: RodParameters, rules: ConfigurationRules
+) -> Floats | None:
+    """Draw a centre line with true over and under, not yet at rest; None when it got stuck."""
+    layout = LayoutRules(_shrunk(rules.area, SPRING_BACK_M), parameters.node_spacing_m)
+    core = _place_core(knot, rng, layout, rules)
+    if core is None:
+        return None
+    template = TEMPLATES.get(knot)
+    spare = rules.most_crossings - (len(template.over) // 2 if template else 0)
+    free_m = rules.length_m - (len(core) - 1) * layout.spacing_m
+    longest = 1.0 - rules.shortest_end_m / free_m
+    share = float(np.clip(rng.uniform(*rules.place), 1.0 - longest, longest))
+    first = int(rng.integers(spare + 1))
+    curve = grow_end(core, free_m * share, first, layout, rng)
+    if curve is not None:
+        curve = grow_end(curve[::-1], free_m * (1.0 - share), spare - first, layout, rng)
+    if curve is None:
+        return None
+    curve = curve[::-1]
+    start = len(curve) - round(free_m * share / layout.spacing_m) - len(core)
+    return _raise_over(curve, (start, start + len(core) - 1), template is not None, rng, parameters)
+
+
+def settle(nodes_m: Floats, parameters: RodParameters, longest_s: float = 6.0) -> Floats:
+    """Let a cable come to rest on the table and return where it lies, shape (N, 3)."""
+    rod = Rod(nodes_m, parameters)
+    while rod.time_s < longest_s:
+        rod.advance(0.25)
+        if np.linalg.norm(rod.velocities_m_s, axis=1).max() < REST_SPEED_M_S:
+            break
+    return rod.positions_m.copy()
+
+
+def _shrunk(area: Area, margin_m: float) -> Area:
+    return Area(
+        (area.low_m[0] + margin_m, area.low_m[1] + margin_m),
+        (area.high_m[0] - margin_m, area.high_m[1] - margin_m),
+    )
+
+
+def _place_core(
+    knot: KnotName, rng: np.random.Generator, layout: LayoutRules, rules: ConfigurationRules
+) -> Floats | None:
+    """Return the knot, or a straight piece, somewhere in the area, shape (N, 2)."""
+    if knot in TEMPLATES:
+        curve = TEMPLATES[knot].curve_m(rng.uniform(*rules.diameter_m), layout.spacing_m)
+    else:
+        curve = np.column_stack([np.arange(8) * layout.spacing_m, np.zeros(8)])
+    angle = rng.uniform(-np.pi, np.pi)
+    turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+    mirror = np.array([1.0, rng.choice([-1.0, 1.0])])
+    curve = (curve * mirror) @ turn.T
+    low, high = np.array(layout.area.low_m), np.array(layout.area.high_m)
+    room_low, room_high = low - curve.min(axis=0), high - curve.max(axis=0)
+    if (room_low > room_high).any():
+        return None
+    placed: Floats = curve + rng.uniform(room_low, room_high)
+    return placed
+
+
+def _raise_over(
+    curve: Floats,
+    knot: tuple[int, int],
+    tied: bool,
+    rng: np.random.Generator,
+    parameters: RodParameters,
+) -> Floats:
+    """Lift the upper strand of every crossing over the lower one, shape (N, 3)."""
+    flat = np.column_stack([curve, np.full(len(curve), parameters.radius_m)])
+    crossings = centre_line_crossings(flat)
+    starts_over = bool(rng.integers(2))
+    visits: list[tuple[float, bool]] = []
+    for crossing in crossings:
+        first_over = bool(rng.integers(2))
+        if tied and knot[0] <= crossing.first and crossing.second <= knot[1]:
+            first_over = _template_says(crossing, crossings, knot) == starts_over
+        visits += [(crossing.first, first_over), (crossing.second, not first_over)]
+    flat[:, 2] += _bumps(len(curve), visits, 2.2 * parameters.radius_m)
+    return flat
+
+
+def _template_says(
+    crossing: StrandCrossing, crossings: tuple[StrandCrossing, ...], knot: tuple[int, int]
+) -> bool:
+    """Return whether the earlier visit is an even one: the templates are alternating."""
+    inside = [c for c in crossings if knot[0] <= c.first and c.second <= knot[1]]
+    visits = sorted(visit for c in inside for visit in (c.first, c.second))
+    return visits.index(crossing.first) % 2 == 0
+
+
+def _bumps(nodes: int, visits: list[tuple[float, bool]], height_m: float) -> Floats:
+    """Return how high each node is lifted, shape (N,): smooth bumps that spare lower visits."""
+    index = np.arange(nodes, dtype=float)
+    lifted = np.zeros(nodes)
+    under = np.array([arc for arc, over in visits if not over])
+    for arc, over in visits:
+        if over:
+            width = min(3.5, 0.6 * float(np.abs(under - arc).min()))
+            inside = np.abs(index - arc) < width
+            bump = height_m * np.cos(0.5 * np.pi * (index - arc) / width) ** 2
+            lifted = np.where(inside, np.maximum(lifted, bump), lifted)
+    return lifted
+
+
+def _is_tied(nodes_m: Floats, knot: KnotName) -> bool:
+    """Return whether exactly the wanted knot is tied.
+
+    The templates are the only knots with three and with four crossings.
+    """
+    verdict = classify_curve(nodes_m)
+    if knot not in TEMPLATES:
+        return verdict.state is Knottedness.UNKNOT
+    wanted = len(TEMPLATES[knot].over) // 2
+    return verdict.state is Knottedness.KNOTTED and verdict.reduced_crossings == wanted
+
+
+def _follows(nodes_m: Floats, knot: KnotName, rules: ConfigurationRules) -> bool:
+    """Return whether a cable at rest keeps the rules: knot, area, crossings, ends in sight."""
+    return (
+        _is_tied(nodes_m, knot)
+        and rules.area.contains(nodes_m[:, :2])
+        and len(centre_line_crossings(nodes_m)) <= rules.most_crossings
+        and ends_in_sight(nodes_m)
+    )
+
+
+def ends_in_sight(nodes_m: Floats, clearance_m: float = 0.02, within_m: float = 0.04) -> bool:
+    """Return whether no other strand lies near the last stretch at either end."""
+    arcs_m = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(nodes_m, axis=0), axis=1))])
+    for arcs, points in ((arcs_m, nodes_m), (arcs_m[-1] - arcs_m, nodes_m)):
+        tip, rest = points[arcs <= within_m, :2], points[arcs > within_m + 2.0 * clearance_m, :2]
+        if np.linalg.norm(tip[:, None] - rest[None], axis=2).min() < clearance_m:
+            return False
+    return True
