@@ -13,6 +13,11 @@ from robots.descriptions.model import Box, Capsule, Joint, Limits, Link, RobotDe
 from robots.interfaces import ARMS, Arm
 
 TCP_FROM_GRIPPER_BASE_M = 0.130
+# The tool gets 0.703 m away from joint 2 at most (over random configurations), and joint 2 is
+# 0.104 m from joint 1.
+REACH_M = 0.807
+# How far the hand gets from each joint's axis, rounded up; the last turns only the hand.
+LEVERS_M = (0.74, 0.71, 0.50, 0.45, 0.21, 0.18, 0.04)
 FINGER_STROKE_M = 0.025  # of each finger; the opening between them is twice that
 FINGER_SPEED_M_S = 0.025
 _CAPSULE_ALLOWANCE_M = 0.001  # the fits let mesh vertices stick out by up to 0.61 mm

@@ -1,0 +1,1 @@
+"""From a goal of a tool to a checked trajectory: kinematics, collisions, paths, timing."""

@@ -1,0 +1,88 @@
+"""Which poses of a tool satisfy a goal: yaw, its symmetry, and leaning where that helps."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from math import cos, pi, sin
+
+import numpy as np
+import pinocchio as pin
+
+from robots.interfaces import Floats, TcpGoal
+
+# Yaws that are tried when a goal leaves the yaw free: eight over half a turn.
+_FREE_YAWS = tuple(pi * step / 8 for step in range(8))
+_DOWN: Floats = np.array([0.0, 0.0, -1.0])
+# Leaning sideways by more than this share is no help in reaching out.
+_LEAST_OUTWARD_SHARE = 0.3
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ToolPose:
+    """One way to satisfy a goal.
+
+    Attributes:
+        T_world_tcp: Pose of the tool.
+        tilt_rad: How far it leans from straight down.
+    """
+
+    T_world_tcp: pin.SE3
+    tilt_rad: float
+
+
+def pointing_down(yaw_rad: float) -> Floats:
+    """Return the rotation of a tool that points down and opens along a yaw, shape (3, 3)."""
+    c, s = cos(yaw_rad), sin(yaw_rad)
+    return np.array([[c, s, 0.0], [s, -c, 0.0], [0.0, 0.0, -1.0]])
+
+
+def tool_poses(goal: TcpGoal, shoulder_m: Floats) -> Iterator[tuple[ToolPose, ...]]:
+    """Yield groups of poses that satisfy a goal, the straightest group first.
+
+    Each pose comes with its twin, half a turn about the tool's axis, which is the same grasp.
+    Leaning is outward, the fingers ahead of the wrist, and first about the opening axis, which
+    keeps both fingertips level; last inward, for places close to the body.
+
+    Args:
+        goal: What is asked of the tool.
+        shoulder_m: Where the arm starts, in the world, shape (3,).
+    """
+    yaws = _FREE_YAWS if goal.yaw_rad is None else (goal.yaw_rad,)
+    yield tuple(pose for yaw in yaws for pose in _twins(goal, pointing_down(yaw), 0.0))
+    outward = _horizontal(goal.position_m - shoulder_m)
+    for share, sign in ((0.5, 1.0), (1.0, 1.0), (1.0, -1.0)):
+        tilt = share * goal.max_tilt_rad
+        if tilt > 0.0:
+            yield tuple(
+                pose
+                for yaw in yaws
+                for lean in _leans(yaw, sign * outward)
+                for pose in _twins(goal, _leant(pointing_down(yaw), lean, tilt), tilt)
+            )
+
+
+def _twins(goal: TcpGoal, rotation: Floats, tilt_rad: float) -> Iterator[ToolPose]:
+    for turn in (1.0, -1.0):
+        turned = rotation * np.array([turn, turn, 1.0])
+        yield ToolPose(pin.SE3(turned, goal.position_m), tilt_rad)
+
+
+def _horizontal(vector: Floats) -> Floats:
+    flat = np.array([vector[0], vector[1], 0.0])
+    length = float(np.linalg.norm(flat))
+    return flat / length if length > 1e-6 else np.array([0.0, 1.0, 0.0])
+
+
+def _leans(yaw_rad: float, towards: Floats) -> Iterator[Floats]:
+    """Yield directions to lean to: square to the opening if that helps, then as told."""
+    level = np.array([-sin(yaw_rad), cos(yaw_rad), 0.0])
+    along = float(level @ towards)
+    if abs(along) > _LEAST_OUTWARD_SHARE:
+        yield level * np.sign(along)
+    if abs(along) < 0.99:
+        yield towards
+
+
+def _leant(rotation: Floats, towards: Floats, tilt_rad: float) -> Floats:
+    """Turn a rotation so that the tool's axis leans towards a horizontal unit vector."""
+    axis = np.cross(_DOWN, towards)
+    return pin.AngleAxis(tilt_rad, axis).toRotationMatrix() @ rotation

@@ -1,0 +1,166 @@
+"""The robot in Pinocchio: one model of the whole machine, one reduced model an arm.
+
+A configuration is one vector with the arms' joints in the order of `RobotModel.arms`, each in
+chain order; fingers are no part of it, they follow the gripper's opening. All poses are in the
+world frame.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import pinocchio as pin
+
+from robots.descriptions import urdf_path
+from robots.descriptions.yumi import (
+    LEVERS_M,
+    REACH_M,
+    arm_joint_names,
+    finger_joint_names,
+    tcp_frame,
+)
+from robots.interfaces import ARMS, Arm, Floats
+from robots.limits import JointLimits
+from robots.placement import Placement
+
+
+@dataclass(frozen=True, slots=True)
+class ArmSpec:
+    """Names by which an arm is found in a URDF.
+
+    Attributes:
+        joints: In chain order.
+        fingers: Joints that each make half of the opening.
+        tcp: Frame of the tool centre point.
+        levers_m: How far the farthest part that a joint moves is from its axis, each [m].
+        reach_m: The tool is never farther than this from the first joint's frame [m].
+    """
+
+    joints: tuple[str, ...]
+    fingers: tuple[str, ...]
+    tcp: str
+    levers_m: tuple[float, ...]
+    reach_m: float
+
+
+class ArmKinematics:
+    """Forward kinematics and Jacobian of one arm, everything else of the robot locked."""
+
+    def __init__(self, model: pin.Model, tcp: str) -> None:
+        """Take the reduced model of an arm and the name of its tool frame."""
+        self.model = model
+        self._data = model.createData()
+        self._tcp = model.getFrameId(tcp)
+        self.lower: Floats = model.lowerPositionLimit.copy()
+        self.upper: Floats = model.upperPositionLimit.copy()
+        self.velocity: Floats = model.velocityLimit.copy()
+
+    @property
+    def shoulder_m(self) -> Floats:
+        """Position of the first joint in the world [m], shape (3,)."""
+        return self.model.jointPlacements[1].translation.copy()
+
+    def tcp_pose(self, positions_rad: Floats) -> pin.SE3:
+        """Return T_world_tcp at joint positions of shape (7,)."""
+        pin.forwardKinematics(self.model, self._data, positions_rad)
+        return pin.updateFramePlacement(self.model, self._data, self._tcp).copy()
+
+    def tcp_jacobian(self, positions_rad: Floats) -> tuple[pin.SE3, Floats]:
+        """Return T_world_tcp and the Jacobian of the tool's twist in its own frame, (6, 7)."""
+        pin.computeJointJacobians(self.model, self._data, positions_rad)
+        T_world_tcp = pin.updateFramePlacement(self.model, self._data, self._tcp)
+        jacobian = pin.getFrameJacobian(self.model, self._data, self._tcp, pin.ReferenceFrame.LOCAL)
+        return T_world_tcp, jacobian
+
+
+class RobotModel:
+    """A robot with one or more arms, standing in the world."""
+
+    def __init__(self, urdf: Path, arms: Mapping[Arm, ArmSpec], placement: Placement) -> None:
+        """Load a URDF and put its root where the placement says."""
+        self.model = pin.buildModelFromUrdf(str(urdf))
+        self.geometry = pin.buildGeomFromUrdf(self.model, str(urdf), pin.GeometryType.COLLISION)
+        self.specs = dict(arms)
+        self.arms: tuple[Arm, ...] = tuple(arms)
+        self._stand(placement)
+        names = [name for spec in arms.values() for name in spec.joints]
+        self._arm_indices = np.array([self._index(name) for name in names])
+        self._finger_indices = {
+            arm: np.array([self._index(name) for name in spec.fingers])
+            for arm, spec in arms.items()
+        }
+        self.kinematics = {arm: self._reduced(spec) for arm, spec in arms.items()}
+        self.levers_m: Floats = np.array([m for spec in arms.values() for m in spec.levers_m])
+        self.limits = JointLimits.from_speeds(
+            self.model.lowerPositionLimit[self._arm_indices],
+            self.model.upperPositionLimit[self._arm_indices],
+            self.model.velocityLimit[self._arm_indices],
+        )
+
+    @property
+    def size(self) -> int:
+        """Number of arm joints."""
+        return len(self._arm_indices)
+
+    def joints_of(self, arm: Arm) -> slice:
+        """Return where an arm's joints are in a configuration."""
+        start = 0
+        for name in self.arms:
+            stop = start + len(self.specs[name].joints)
+            if name == arm:
+                return slice(start, stop)
+            start = stop
+        raise KeyError(arm)
+
+    def complete(self, positions_rad: Floats, openings_m: Mapping[Arm, float]) -> Floats:
+        """Return Pinocchio's configuration of the whole robot, fingers included."""
+        q: Floats = np.zeros(self.model.nq)
+        q[self._arm_indices] = positions_rad
+        for arm, opening_m in openings_m.items():
+            q[self._finger_indices[arm]] = opening_m / 2
+        return q
+
+    def write_arms(self, q: Floats, positions_rad: Floats) -> None:
+        """Overwrite the arm joints of a complete configuration, in place."""
+        q[self._arm_indices] = positions_rad
+
+    def tcp_pose(self, arm: Arm, positions_rad: Floats) -> pin.SE3:
+        """Return T_world_tcp of an arm at a configuration of all arms."""
+        return self.kinematics[arm].tcp_pose(positions_rad[self.joints_of(arm)])
+
+    def _index(self, joint: str) -> int:
+        return int(self.model.joints[self.model.getJointId(joint)].idx_q)
+
+    def _stand(self, placement: Placement) -> None:
+        T_world_body = pin.SE3(
+            pin.rpy.rpyToMatrix(0.0, 0.0, placement.yaw_rad), np.array(placement.position_m)
+        )
+        for joint in range(1, self.model.njoints):
+            if self.model.parents[joint] == 0:
+                placed = T_world_body * self.model.jointPlacements[joint]
+                self.model.jointPlacements[joint] = placed
+        for frame in self.model.frames:
+            if frame.parentJoint == 0:
+                frame.placement = T_world_body * frame.placement
+        for shape in self.geometry.geometryObjects:
+            if shape.parentJoint == 0:
+                shape.placement = T_world_body * shape.placement
+
+    def _reduced(self, spec: ArmSpec) -> ArmKinematics:
+        locked = [
+            self.model.getJointId(name) for name in self.model.names[1:] if name not in spec.joints
+        ]
+        reduced = pin.buildReducedModel(self.model, locked, pin.neutral(self.model))
+        return ArmKinematics(reduced, spec.tcp)
+
+
+def yumi_model(placement: Placement) -> RobotModel:
+    """Return the YuMi, left arm first, at its place."""
+    specs = {
+        arm: ArmSpec(
+            arm_joint_names(arm), finger_joint_names(arm), tcp_frame(arm), LEVERS_M, REACH_M
+        )
+        for arm in ARMS
+    }
+    return RobotModel(urdf_path("yumi"), specs, placement)

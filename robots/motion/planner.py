@@ -1,0 +1,160 @@
+"""Plans of one robot: goal, configuration, path, timing, verification; or why not.
+
+Each request is answered from its arguments and the seed, counted by request, alone.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from robots.interfaces import Arm, Floats, MotionFailure, TcpGoal, Trajectory
+from robots.motion.line import LineStop, follow_line, time_line
+from robots.motion.model import RobotModel
+from robots.motion.path import PathSearch, Space
+from robots.motion.solver import GoalSolver
+from robots.motion.timing import cut_corners, stop_at_waypoints
+from robots.motion.verify import find_fault
+from robots.placement import PlanningScene
+
+
+@dataclass(frozen=True, slots=True)
+class PlannerSettings:
+    """How much work a plan may cost, and how fast motions are.
+
+    Attributes:
+        goal_solutions: Inverse solutions that are looked for.
+        path_checks: Collision checks that one RRT-Connect query may spend.
+        path_goals: Solutions to which a path is searched.
+        corner_tries: Shortcuts in time that are tried.
+        speed_scale: 1 is the joints' full speed.
+        line_speed_m_s: Largest tool speed on lines [m/s].
+    """
+
+    goal_solutions: int = 6
+    path_checks: int = 12_000
+    path_goals: int = 3
+    corner_tries: int = 40
+    speed_scale: float = 1.0
+    line_speed_m_s: float = 0.25
+
+
+class MotionPlanner:
+    """Plans motions of all arms of a robot among static boxes."""
+
+    def __init__(
+        self,
+        robot: RobotModel,
+        scene: PlanningScene,
+        rest_rad: Floats,
+        seed: int,
+        settings: PlannerSettings | None = None,
+    ) -> None:
+        """Prepare collision models and inverse kinematics.
+
+        Args:
+            robot: The robot.
+            scene: What stands around it.
+            rest_rad: An ordinary configuration of all arms, shape (n,).
+            seed: Of everything random.
+            settings: Effort and speed.
+        """
+        self.robot = robot
+        self.solver = GoalSolver(robot, scene, rest_rad, seed)
+        self.settings = settings or PlannerSettings()
+        self.limits = robot.limits.slowed(self.settings.speed_scale)
+        self._seed = seed
+        self._requests = 0
+
+    def to_goals(
+        self, start_rad: Floats, goals: Mapping[Arm, TcpGoal]
+    ) -> Trajectory | MotionFailure:
+        """Plan to goals of some arms; the others stay where they are."""
+        self.solver.together.excuse(start_rad)
+        found = self.solver.configurations(goals, start_rad, self.settings.goal_solutions)
+        if isinstance(found, MotionFailure):
+            return found
+        return self._to_any(start_rad, found, tuple(goals))
+
+    def to_configuration(self, start_rad: Floats, end_rad: Floats) -> Trajectory | MotionFailure:
+        """Plan to a configuration of all arms."""
+        self.solver.together.excuse(start_rad)
+        pair = self.solver.together.colliding_pair(end_rad)
+        if pair is not None:
+            text = f"the configuration asked for collides: {' and '.join(pair)}"
+            return MotionFailure("motion.collision", "path", text, pair)
+        return self._to_any(start_rad, [end_rad], self.robot.arms)
+
+    def along_lines(
+        self, start_rad: Floats, displacements_m: Mapping[Arm, Floats]
+    ) -> Trajectory | MotionFailure:
+        """Plan straight tool motions in step, orientation kept."""
+        self.solver.together.excuse(start_rad)
+        samples = follow_line(self.robot, start_rad, displacements_m)
+        if isinstance(samples, LineStop):
+            length = float(np.linalg.norm(displacements_m[samples.arm]))
+            text = (
+                f"{samples.arm} arm: only {samples.fraction * length:.3f} m of the"
+                f" {length:.3f} m line is within the joint limits"
+            )
+            return MotionFailure("motion.unreachable", "line", text)
+        longest = max(float(np.linalg.norm(d)) for d in displacements_m.values())
+        rate = self.settings.line_speed_m_s / max(longest, 1e-9)
+        trajectory = time_line(samples, self.limits, rate)
+        if trajectory is None:
+            return _untimed("line")
+        return self._checked(trajectory)
+
+    def _to_any(
+        self, start: Floats, ends: Sequence[Floats], arms: Sequence[Arm]
+    ) -> Trajectory | MotionFailure:
+        rng = np.random.default_rng([self._seed, self._requests])
+        self._requests += 1
+        moving = np.concatenate([np.r_[self.robot.joints_of(arm)] for arm in arms])
+        space = self._space(start, moving)
+        failure: MotionFailure | None = None
+        search = PathSearch(space, rng, self.settings.path_checks, self.settings.path_goals)
+        for path in search.paths(start[moving], [end[moving] for end in ends]):
+            whole = np.tile(start, (len(path), 1))
+            whole[:, moving] = path
+            answer = self._timed(whole, rng)
+            if not isinstance(answer, MotionFailure):
+                return answer
+            failure = answer
+        return failure or self._no_path(arms, ends)
+
+    def _space(self, base: Floats, moving: Floats) -> Space:
+        whole = base.copy()
+        collision = self.solver.together
+
+        def collides(positions_rad: Floats) -> bool:
+            whole[moving] = positions_rad
+            return collision.collides(whole)
+
+        limits = self.limits.of(moving)
+        return Space(limits.lower, limits.upper, self.robot.levers_m[moving], collides)
+
+    def _timed(self, path: Floats, rng: np.random.Generator) -> Trajectory | MotionFailure:
+        stops = stop_at_waypoints(list(path), self.limits)
+        if stops is None:
+            return _untimed("timing")
+        tries = self.settings.corner_tries if len(path) > 2 else 0
+        collision = self.solver.together
+        cut = cut_corners(stops, self.limits, lambda q: not collision.collides(q), rng, tries)
+        answer = self._checked(cut)
+        return self._checked(stops) if isinstance(answer, MotionFailure) and tries else answer
+
+    def _checked(self, trajectory: Trajectory) -> Trajectory | MotionFailure:
+        return find_fault(trajectory, self.limits, self.solver.together) or trajectory
+
+    def _no_path(self, arms: Sequence[Arm], ends: Sequence[Floats]) -> MotionFailure:
+        tried = min(len(ends), self.settings.path_goals)
+        text = (
+            f"{' and '.join(arms)} arm: no path to any of {tried} configurations"
+            f" within {self.settings.path_checks} collision checks each"
+        )
+        return MotionFailure("motion.no_path", "path", text)
+
+
+def _untimed(stage: str) -> MotionFailure:
+    return MotionFailure("motion.timing", stage, "Ruckig found no motion between two states")

@@ -1,0 +1,53 @@
+"""Arms that are where they are told to be, the moment they are told."""
+
+import numpy as np
+
+from robots.interfaces import ARMS, ArmsState
+
+OPENINGS_M = {"open": 0.05, "cage": 0.012, "pinch": 0.0}
+
+
+class FakeArms:
+    """An `ArmsDriver` in memory with perfect tracking; a test moves time on with `finish`."""
+
+    def __init__(self, positions_rad):
+        self.positions_rad = np.array(positions_rad, dtype=float)
+        self.openings_m = dict.fromkeys(ARMS, OPENINGS_M["open"])
+        self.running = None
+        self.executed = []
+
+    def state(self):
+        still = np.zeros_like(self.positions_rad)
+        return ArmsState(
+            self.positions_rad, still, still, dict(self.openings_m), self.running is not None, 0.0
+        )
+
+    def execute(self, trajectory):
+        assert trajectory.at(0.0)[0] == pytest_approx(self.positions_rad)
+        self.running = trajectory
+        self.executed.append(trajectory)
+
+    def finish(self):
+        self.positions_rad = self.running.at(self.running.duration_s)[0]
+        self.running = None
+
+    def grip(self, arm, grip):
+        self.openings_m[arm] = OPENINGS_M[grip]
+
+    def gripping(self, arm):
+        return False
+
+    def holds(self, arm):
+        return False
+
+    def stop(self):
+        self.running = None
+
+    def emergency_stop(self):
+        self.running = None
+
+
+def pytest_approx(values):
+    import pytest
+
+    return pytest.approx(values, abs=1e-9)
