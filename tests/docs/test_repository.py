@@ -1,13 +1,19 @@
-"""What may not enter the repository: large files, and paths of one machine."""
+"""What may not enter the repository, and that it asks for what it uses."""
 
+import ast
+import importlib.metadata
 import re
 import subprocess
+import sys
+import tomllib
 from pathlib import Path
 
 import pytest
 
 ROOT = Path(__file__).parents[2]
 MAX_BYTES = 2_000_000
+# Import names whose distribution says nothing of them, or is a part of another one.
+OWNERS = {"coal": ["pin"], "pinocchio": ["pin"], "pydantic_core": ["pydantic"]}
 ABSOLUTE_PATH = re.compile(r"(?<![\w.~<])/(?:home|root|tmp|work|Users)/[\w.]")
 
 
@@ -48,9 +54,44 @@ def test_no_file_names_a_path_of_one_machine():
     assert named == {}
 
 
+def asked_for() -> set[str]:
+    """Return the distributions that the installed package asks for."""
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    wanted = sum(project["optional-dependencies"].values(), start=project["dependencies"])
+    return {canonical(re.split(r"[>=<]", each)[0]) for each in wanted}
+
+
+def canonical(name: str) -> str:
+    """Return a distribution's name as package indexes compare it."""
+    return re.sub(r"[-_.]+", "-", name).lower()
+
+
+def imported(path: Path) -> set[str]:
+    """Return the top-level names that a module imports."""
+    names: set[str] = set()
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            names |= {alias.name.split(".")[0] for alias in node.names}
+        elif isinstance(node, ast.ImportFrom) and node.module:
+            names.add(node.module.split(".")[0])
+    return names
+
+
 def test_every_package_that_is_asked_for_is_pinned():
-    asked = re.findall(r'^    "([\w-]+)[>=<]', (ROOT / "pyproject.toml").read_text(), re.MULTILINE)
-    lines = (ROOT / "constraints.txt").read_text().splitlines()
-    pinned = {line.split("==")[0].lower().replace("_", "-") for line in lines if "==" in line}
-    assert asked
-    assert [name for name in asked if name.lower().replace("_", "-") not in pinned] == []
+    lines = (ROOT / "constraints.txt").read_text(encoding="utf-8").splitlines()
+    pinned = {canonical(line.split("==")[0]) for line in lines if "==" in line}
+    assert asked_for() - pinned == set()
+
+
+def test_everything_that_is_imported_is_asked_for():
+    modules = [path for path in tracked_files() if path.suffix == ".py"]
+    own = {path.parent.name for path in ROOT.glob("*/__init__.py")} | {
+        path.stem for path in modules
+    }
+    others = set().union(*map(imported, modules)) - own - sys.stdlib_module_names
+    owners = importlib.metadata.packages_distributions() | OWNERS
+    asked = asked_for()
+    unasked = {
+        name for name in others if not asked.intersection(map(canonical, owners.get(name, [name])))
+    }
+    assert unasked == set()
