@@ -1,0 +1,141 @@
+"""The controllers of the simulated arms: `robots.interfaces.ArmsDriver` over `YumiBody`."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from typing import Literal
+
+import numpy as np
+
+from executive.core.errors import DeviceError
+from robots.interfaces import ARMS, Arm, ArmsState, Floats, Grip, Trajectory
+from robots.limits import JointLimits
+from robots.motion.stopping import stop_trajectory
+from simulation.cable.rod import Rod
+from simulation.grippers import Gripper
+from simulation.yumi_body import YumiBody
+
+_START_TOLERANCE_RAD = 2e-3
+# Brakes take out speed four times as fast as a motion would, and bite at once.
+_BRAKE_ACCELERATION, _BRAKE_JERK = 4.0, 1000.0
+_Mode = Literal["rest", "motion", "stop", "brake"]
+
+
+class SimArmsDriver:
+    """Follows trajectories and moves fingers, step by step with the world."""
+
+    def __init__(
+        self, body: YumiBody, rod: Rod, now_s: Callable[[], float], limits: JointLimits
+    ) -> None:
+        """Take over a body at rest, grippers open; both hands must be known to the rod.
+
+        Args:
+            body: The arms.
+            rod: What the hands take hold of.
+            now_s: Tells the time.
+            limits: Of a stop.
+        """
+        self._body, self._rod, self._now_s, self._limits = body, rod, now_s, limits
+        self._grippers: dict[Arm, Gripper] = {arm: Gripper(arm) for arm in ARMS}
+        self._mode: _Mode = "rest"
+        self._trajectory: Trajectory | None = None
+        self._elapsed_s = 0.0
+        self._target_rad = body.joint_state()[0]
+        self._acceleration: Floats = np.zeros_like(self._target_rad)
+
+    @property
+    def at_rest(self) -> bool:
+        """Whether neither an arm nor a finger moves."""
+        return self._mode == "rest" and not any(g.moving for g in self._grippers.values())
+
+    def advance(self, duration_s: float) -> None:
+        """Send the body where it has to be `duration_s` from now."""
+        if self._trajectory is not None:
+            self._elapsed_s += duration_s
+            self._target_rad, _, self._acceleration = self._trajectory.at(self._elapsed_s)
+            if self._elapsed_s >= self._trajectory.duration_s:
+                self._rest()
+        for gripper in self._grippers.values():
+            gripper.advance(duration_s)
+        self._body.drive(self._target_rad, self._openings())
+
+    def state(self) -> ArmsState:
+        """Return the present state."""
+        positions, velocities = self._body.joint_state()
+        return ArmsState(
+            positions_rad=positions,
+            velocities_rad_s=velocities,
+            accelerations_rad_s2=self._acceleration.copy(),
+            openings_m=self._body.openings_m(),
+            moving=self._mode != "rest",
+            stamp_s=self._now_s(),
+        )
+
+    def execute(self, trajectory: Trajectory) -> None:
+        """Start a trajectory that begins at the present state.
+
+        Raises:
+            DeviceError: It begins elsewhere, or another one is running.
+        """
+        if self._mode != "rest":
+            raise DeviceError(
+                f"arms: a {self._mode} is under way; got another trajectory; expected one at a "
+                "time; try: wait until the state says that nothing moves"
+            )
+        away_rad = np.abs(trajectory.at(0.0)[0] - self._body.joint_state()[0])
+        if away_rad.max() > _START_TOLERANCE_RAD:
+            joint = int(away_rad.argmax())
+            raise DeviceError(
+                f"arms: trajectory begins elsewhere; got {ARMS[joint // 7]} joint "
+                f"{joint % 7 + 1} off by {away_rad[joint]:.4f} rad; expected at most "
+                f"{_START_TOLERANCE_RAD} rad; try: plan from the present state"
+            )
+        self._begin(trajectory, "motion")
+
+    def grip(self, arm: Arm, grip: Grip) -> None:
+        """Start opening or closing a gripper; a closing one takes what is between its fingers."""
+        self._grippers[arm].command(grip, self._rod)
+
+    def gripping(self, arm: Arm) -> bool:
+        """Return whether the fingers are still on their way."""
+        return self._grippers[arm].moving
+
+    def holds(self, arm: Arm) -> bool:
+        """Return whether something is between the closed fingers."""
+        return self._grippers[arm].closed_on > 0
+
+    def stop(self) -> None:
+        """Bring all joints to rest within their jerk limits; fingers finish what they began."""
+        if self._mode == "motion":
+            self._end_motion(self._limits, "stop")
+
+    def emergency_stop(self) -> None:
+        """Stop as fast as the brakes allow; fingers finish what they began."""
+        if self._mode in ("motion", "stop"):
+            limits = replace(
+                self._limits,
+                acceleration=_BRAKE_ACCELERATION * self._limits.acceleration,
+                jerk=_BRAKE_JERK * self._limits.jerk,
+            )
+            self._end_motion(limits, "brake")
+
+    def _end_motion(self, limits: JointLimits, mode: _Mode) -> None:
+        assert self._trajectory is not None
+        # Brake from where the motion is meant to be: measured speeds and accelerations jitter.
+        position, velocity, acceleration = self._trajectory.at(self._elapsed_s)
+        commanded = replace(
+            self.state(),
+            positions_rad=position,
+            velocities_rad_s=velocity,
+            accelerations_rad_s2=acceleration,
+        )
+        self._begin(stop_trajectory(commanded, limits), mode)
+
+    def _begin(self, trajectory: Trajectory, mode: _Mode) -> None:
+        self._trajectory, self._mode, self._elapsed_s = trajectory, mode, 0.0
+
+    def _rest(self) -> None:
+        self._trajectory, self._mode = None, "rest"
+        self._acceleration = np.zeros_like(self._target_rad)
+
+    def _openings(self) -> Mapping[Arm, float]:
+        return {arm: gripper.opening_m for arm, gripper in self._grippers.items()}

@@ -1,0 +1,98 @@
+"""What a simulated cell records of itself: joint states and the scene, as JSON.
+
+`/joint_states`, schema `JointStates`:
+    {"names": [str], "positions": [rad or m], "velocities": [rad/s]}
+    All revolute joints first (left arm, then right arm, in chain order), then the opening [m]
+    of each gripper as `left_gripper` and `right_gripper`, whose velocity is not told (0).
+
+`/scene`, schema `Scene`:
+    {"links": {name: [x, y, z, qx, qy, qz, qw]}, "cable_nodes_m": [[x, y, z], ...],
+     "cable_radius_m": float}
+    Poses of the robot's links in the world [m], quaternion last; the cable's centre line in
+    the world. Lengths are rounded to 0.1 mm, quaternions to 1e-4.
+
+A message is written when something has changed since the last of its kind.
+"""
+
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from executive.core.world import StreamMessage
+from robots.descriptions.yumi import arm_joint_names
+from robots.interfaces import ARMS, ArmsState
+
+Floats = NDArray[np.float64]
+
+JOINT_NAMES = [name for arm in ARMS for name in arm_joint_names(arm)]
+GRIPPER_NAMES = [f"{arm}_gripper" for arm in ARMS]
+
+
+def joint_states_json(state: ArmsState) -> bytes:
+    """Return a `JointStates` message."""
+    openings_m = [state.openings_m[arm] for arm in ARMS]
+    return _json(
+        {
+            "names": JOINT_NAMES + GRIPPER_NAMES,
+            "positions": _rounded([*state.positions_rad, *openings_m], 5),
+            "velocities": _rounded([*state.velocities_rad_s, *(0.0 for _ in ARMS)], 4),
+        }
+    )
+
+
+def scene_json(
+    link_names: Sequence[str],
+    positions_m: Floats,
+    quats_xyzw: Floats,
+    nodes_m: Floats,
+    radius_m: float,
+) -> bytes:
+    """Return a `Scene` message; poses shape (L, 3) and (L, 4), nodes shape (N, 3)."""
+    poses = np.hstack([positions_m, quats_xyzw])
+    return _json(
+        {
+            "links": dict(zip(link_names, _rounded(poses, 4), strict=True)),
+            "cable_nodes_m": _rounded(nodes_m, 4),
+            "cable_radius_m": radius_m,
+        }
+    )
+
+
+@dataclass(slots=True)
+class Stream:
+    """Messages of one topic, thinned to a rate and to those that differ from the last one."""
+
+    topic: str
+    schema: str
+    rate_hz: float
+    _last: bytes = b""
+    _due_s: float = 0.0
+    _messages: list[StreamMessage] = field(default_factory=list)
+
+    def due(self, now_s: float) -> bool:
+        """Return whether it is time for another message."""
+        return now_s >= self._due_s - 1e-9
+
+    def add(self, now_s: float, data: bytes) -> None:
+        """Keep a message unless it repeats the last one."""
+        self._due_s = now_s + 1.0 / self.rate_hz
+        if data != self._last:
+            self._last = data
+            self._messages.append(StreamMessage(self.topic, self.schema, now_s, data))
+
+    def drain(self) -> list[StreamMessage]:
+        """Return and forget what has been kept."""
+        messages, self._messages = self._messages, []
+        return messages
+
+
+def _rounded(values: object, digits: int) -> object:
+    # Adding zero turns -0.0, which would look like a change, into 0.0.
+    return (np.round(np.asarray(values, dtype=np.float64), digits) + 0.0).tolist()
+
+
+def _json(message: dict[str, object]) -> bytes:
+    return json.dumps(message, separators=(",", ":")).encode()

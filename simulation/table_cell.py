@@ -1,0 +1,116 @@
+"""The simulated table cell: a YuMi, a table, an overhead camera and one cable."""
+
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from executive.core.world import StreamMessage
+from simulation.arms_driver import SimArmsDriver
+from simulation.cable.configuration_file import configuration_from_file
+from simulation.cable.configurations import starting_configuration
+from simulation.cable.truth import CableTruth, cable_truth
+from simulation.clock import SimClock
+from simulation.overhead_camera import OverheadCamera
+from simulation.streams import Stream, joint_states_json, scene_json
+from simulation.table_cell_config import (
+    CableScenario,
+    TableCellConfig,
+    TableScenario,
+    read_settings,
+)
+from simulation.table_world import TableWorld
+
+Floats = NDArray[np.float64]
+
+
+class TableCell:
+    """`executive.core.world.Cell` in simulation; the same seed gives the same cell.
+
+    Attributes:
+        clock: The world's time; waiting on it lets the physics go on.
+        driver: Controllers of both arms.
+        camera: Looks straight down on the table.
+        devices: The three above, by name.
+    """
+
+    def __init__(
+        self, config: Mapping[str, object], scenario: Mapping[str, object], seed: int
+    ) -> None:
+        """Set the cell up.
+
+        Args:
+            config: See `TableCellConfig`.
+            scenario: See `TableScenario`.
+            seed: Of everything random: the cable, the cloth, the camera's noise.
+
+        Raises:
+            InputError: A key or value is not known, or the cable's file cannot be used.
+        """
+        settings = read_settings(TableCellConfig, config, "cell config")
+        cable = read_settings(TableScenario, scenario, "scenario").cable
+        cable_seed, camera_seed = np.random.SeedSequence(seed).spawn(2)
+        nodes_m = _lay_cable(cable, np.random.default_rng(cable_seed))
+        self._world = TableWorld(nodes_m, settings.physics.step_hz)
+        self.driver: SimArmsDriver = self._world.driver
+        self.camera = OverheadCamera(
+            self._world, settings.camera, np.random.default_rng(camera_seed)
+        )
+        self.clock = SimClock(self._world.step_s, self._advance)
+        self.devices: Mapping[str, object] = {
+            "clock": self.clock,
+            "camera": self.camera,
+            "driver": self.driver,
+        }
+        rates = settings.physics
+        self._joint_states = Stream("/joint_states", "JointStates", rates.joint_states_hz)
+        self._scene = Stream("/scene", "Scene", rates.scene_hz)
+        self._steps_a_record = max(1, rates.step_hz // rates.joint_states_hz)
+        self._record()
+
+    def drain_streams(self) -> Iterable[StreamMessage]:
+        """Return joint states and scenes since the last call, in the order of time."""
+        messages = [*self._joint_states.drain(), *self._scene.drain()]
+        return sorted(messages, key=lambda message: message.time_s)
+
+    def stop(self) -> None:
+        """Bring the arms to rest by a jerk-limited stop; grippers keep what they hold."""
+        self.driver.stop()
+        while self.driver.state().moving:
+            self.clock.sleep_until(self.clock.now_s() + 0.05)
+
+    def close(self) -> None:
+        """Shut the physics server."""
+        self._world.body.close()
+
+    def truth(self) -> CableTruth:
+        """Score the cable as it lies now."""
+        return cable_truth(self._world.rod.positions_m)
+
+    def _advance(self, steps: int) -> None:
+        while steps > 0:
+            some = min(steps, self._steps_a_record)
+            self._world.advance(some)
+            self._record()
+            steps -= some
+
+    def _record(self) -> None:
+        now_s, world = self._world.now_s(), self._world
+        if self._joint_states.due(now_s):
+            self._joint_states.add(now_s, joint_states_json(self.driver.state()))
+        if self._scene.due(now_s):
+            rod = world.rod
+            scene = scene_json(
+                world.body.link_names,
+                *world.body.link_poses(),
+                rod.positions_m,
+                rod.parameters.radius_m,
+            )
+            self._scene.add(now_s, scene)
+
+
+def _lay_cable(cable: CableScenario, rng: np.random.Generator) -> Floats:
+    if cable.file:
+        return configuration_from_file(Path(cable.file))
+    return starting_configuration(cable.knot, rng)

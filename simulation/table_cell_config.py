@@ -1,0 +1,114 @@
+"""What can be set about the table cell: light to import, checked before anything is built."""
+
+from collections.abc import Mapping
+from typing import Annotated, Literal, TypeVar
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic_core import ErrorDetails
+
+from executive.core.errors import InputError
+from executive.core.registry import closest
+
+
+class _Document(BaseModel):
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+
+class CableScenario(_Document):
+    """What lies on the table.
+
+    Attributes:
+        knot: Which knot is tied into a cable that is laid at random.
+        file: JSON file with a centre line that is laid instead; see docs/results.md.
+    """
+
+    knot: Literal["overhand", "figure_8", "none"] = "overhand"
+    file: str = ""
+
+
+class TableScenario(_Document):
+    """What a mission finds in the cell."""
+
+    cable: CableScenario = CableScenario()
+
+
+class CameraConfig(_Document):
+    """The overhead camera.
+
+    Attributes:
+        height_m: Above the table's surface.
+        scale_m_px: What a pixel covers on the table's surface.
+        blur_px: Standard deviation of the lens's blur.
+        read_noise: Noise in the dark, in grey values.
+        speckle: Factor on the flicker of surfaces under the projector.
+        depth_noise_m: Standard deviation of measured depth.
+    """
+
+    height_m: Annotated[float, Field(gt=0.8, le=3.0)] = 1.15
+    scale_m_px: Annotated[float, Field(gt=0.0, le=0.01)] = 0.00102
+    blur_px: Annotated[float, Field(ge=0.0, le=1.5)] = 0.7
+    read_noise: Annotated[float, Field(ge=0.0)] = 0.8
+    speckle: Annotated[float, Field(ge=0.0)] = 1.0
+    depth_noise_m: Annotated[float, Field(ge=0.0)] = 0.0005
+
+
+class PhysicsConfig(_Document):
+    """How finely time is cut.
+
+    Attributes:
+        step_hz: Steps of arms and cable a second.
+        joint_states_hz: Recorded joint states a second.
+        scene_hz: Recorded scenes a second.
+    """
+
+    step_hz: Annotated[int, Field(ge=60, le=2000)] = 240
+    joint_states_hz: Annotated[int, Field(ge=1, le=60)] = 20
+    scene_hz: Annotated[int, Field(ge=1, le=60)] = 5
+
+
+class TableCellConfig(_Document):
+    """The cell itself."""
+
+    camera: CameraConfig = CameraConfig()
+    physics: PhysicsConfig = PhysicsConfig()
+
+
+Model = TypeVar("Model", bound=BaseModel)
+
+
+def read_settings(model: type[Model], values: Mapping[str, object], where: str) -> Model:
+    """Check a mapping against a model.
+
+    Args:
+        model: What is expected.
+        values: What was given.
+        where: Begins each line of the message.
+
+    Raises:
+        InputError: Unknown keys or wrong values, all of them, one a line.
+    """
+    try:
+        return model.model_validate(dict(values))
+    except ValidationError as error:
+        lines = [f"{where}: {_fault(model, detail)}" for detail in error.errors()]
+        raise InputError("\n".join(lines)) from None
+
+
+def _fault(model: type[BaseModel], detail: ErrorDetails) -> str:
+    path = [str(part) for part in detail["loc"]]
+    name = ".".join(path)
+    if detail["type"] == "extra_forbidden":
+        known = _fields(model, path[:-1])
+        return f"{name}: unknown key; {closest(path[-1], known)}"
+    if detail["type"] == "literal_error":
+        expected = detail["ctx"]["expected"]
+        return f"{name}: got {detail['input']!r}; expected {expected}"
+    return f"{name}: got {detail['input']!r}; {detail['msg']}"
+
+
+def _fields(model: type[BaseModel], path: list[str]) -> list[str]:
+    for part in path:
+        annotation = model.model_fields[part].annotation
+        assert isinstance(annotation, type)
+        model = annotation
+    return list(model.model_fields)

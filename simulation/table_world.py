@@ -1,0 +1,66 @@
+"""Arms and cable in one time: each step moves the arms, then the cable that they push and hold."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robots.descriptions import DESCRIPTIONS
+from robots.dual_arm import HOME_RAD
+from robots.interfaces import ARMS
+from robots.limits import yumi_limits
+from simulation.arms_driver import SimArmsDriver
+from simulation.cable.rod import Rod
+from simulation.cable_obstacles import CableObstacles
+from simulation.grippers import OPEN_M
+from simulation.yumi_body import YumiBody
+
+Floats = NDArray[np.float64]
+
+# Once nothing has moved for this many steps, the arms need no more physics.
+_SETTLING_STEPS = 12
+
+
+class TableWorld:
+    """The physics of the cell.
+
+    Attributes:
+        rod: The cable.
+        body: The arms.
+        driver: Their controllers.
+        robot: What the arms look like.
+        step_s: Length of a step.
+    """
+
+    def __init__(self, nodes_m: Floats, step_hz: int) -> None:
+        """Put the robot, at home, before a table with a cable at rest along `nodes_m`."""
+        self.step_s = 1.0 / step_hz
+        self.rod = Rod(nodes_m)
+        self.robot = DESCRIPTIONS["yumi"]()
+        self.body = YumiBody(HOME_RAD, dict.fromkeys(ARMS, OPEN_M), self.step_s)
+        self._obstacles = CableObstacles.of(self.robot, self.body.link_names)
+        self._obstacles.follow(self.rod, *self.body.link_poses())
+        self.driver = SimArmsDriver(self.body, self.rod, self.now_s, yumi_limits())
+        self._steps = self._still_steps = 0
+
+    def now_s(self) -> float:
+        """Return the time since the world began [s]."""
+        return self._steps * self.step_s
+
+    def advance(self, steps: int) -> None:
+        """Let time pass, arms and cable in lockstep; resting arms cost nothing."""
+        done = 0
+        while done < steps and not self._arms_settled():
+            self._step()
+            done += 1
+        if done < steps:
+            self.rod.advance((steps - done) * self.step_s)
+        self._steps += steps
+
+    def _arms_settled(self) -> bool:
+        return self.driver.at_rest and self._still_steps >= _SETTLING_STEPS
+
+    def _step(self) -> None:
+        self._still_steps = self._still_steps + 1 if self.driver.at_rest else 0
+        self.driver.advance(self.step_s)
+        self.body.step()
+        self._obstacles.follow(self.rod, *self.body.link_poses())
+        self.rod.advance(self.step_s)
