@@ -1,0 +1,56 @@
+"""`cellwright check`: everything that is wrong with trees, missions and cells, in one pass."""
+
+import json
+from collections.abc import Sequence
+from dataclasses import asdict
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from executive.app.catalogue import port_types, skills
+from executive.core.errors import Fault
+from executive.engine.loader import Checked, check_files
+
+
+def check(
+    files: Annotated[list[Path], typer.Argument(help="YAML files, or folders of them.")],
+    as_json: Annotated[
+        bool, typer.Option("--json", help="Print one JSON document on stdout.")
+    ] = False,
+) -> None:
+    """Check trees, missions and cells without running them; exit 2 when one has faults."""
+    checked, faults = check_files(_yaml_files(files), skills=skills(), types=port_types())
+    if as_json:
+        typer.echo(_as_json(checked, faults))
+    else:
+        _print(checked, faults)
+    if faults:
+        raise typer.Exit(2)
+
+
+def _yaml_files(paths: Sequence[Path]) -> list[Path]:
+    found = [sorted(path.rglob("*.yaml")) if path.is_dir() else [path] for path in paths]
+    return [file for files in found for file in files]
+
+
+def _as_json(checked: Sequence[Checked], faults: Sequence[Fault]) -> str:
+    document = {
+        "ok": not faults,
+        "files": [asdict(one) for one in checked],
+        "faults": [asdict(fault) for fault in faults],
+    }
+    return json.dumps(document, indent=2)
+
+
+def _print(checked: Sequence[Checked], faults: Sequence[Fault]) -> None:
+    for fault in faults:
+        typer.echo(str(fault))
+    faulty = {fault.file for fault in faults}
+    for one in checked:
+        if one.file not in faulty and one.name:
+            nodes = f", {one.nodes} nodes" if one.nodes else ""
+            typer.echo(f"{one.file}: ok: {one.kind} {one.name}{nodes}")
+    if faults:
+        count = len(faults)
+        typer.echo(f"{count} fault{'s' if count > 1 else ''}", err=True)

@@ -1,0 +1,151 @@
+"""Which py_trees node, or node of ours, a kind of node in YAML becomes."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from py_trees.behaviour import Behaviour
+from py_trees.common import OneShotPolicy, Status
+from py_trees.composites import Selector
+from py_trees.composites import Sequence as SequenceNode
+from py_trees.decorators import FailureIsSuccess, Inverter, OneShot, SuccessIsFailure
+
+from executive.core.clock import Clock
+from executive.engine.decorators import Cooldown, ForEach, Guard, Repeat, Retry, Timeout
+from executive.engine.document import (
+    CooldownBody,
+    ForEachBody,
+    NodeModel,
+    ParallelBody,
+    RepeatBody,
+    RetryBody,
+    SetNode,
+    TimeoutBody,
+    WhenNode,
+)
+from executive.engine.expression import parse_expression
+from executive.engine.nodes import Assignment, Condition
+from executive.engine.parallel import Parallel
+from executive.engine.scope import Scope
+from executive.engine.values import parse_value
+
+_ENDS = {
+    "on_success": Status.SUCCESS,
+    "on_failure": Status.FAILURE,
+    "on_halt": Status.INVALID,
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Site:
+    """Where a node is built, and what it may need there.
+
+    Attributes:
+        name: Its name.
+        path: Its path.
+        scope: Names that it sees.
+        clock: The cell's clock.
+        children: Its children, in order.
+        names: Their names in the file, in order.
+    """
+
+    name: str
+    path: str
+    scope: Scope
+    clock: Clock
+    children: Sequence[Behaviour]
+    names: Sequence[str]
+
+    @property
+    def child(self) -> Behaviour:
+        """The child of a decorator."""
+        return self.children[0]
+
+
+def assemble(model: NodeModel, site: Site) -> Behaviour:
+    """Return the behaviour of any node that runs no skill and no subtree."""
+    return _ASSEMBLERS[model.kind](model, site)
+
+
+def _when(model: WhenNode, site: Site) -> Behaviour:
+    return Condition(site.name, parse_expression(model.when), site.scope)
+
+
+def _set(model: SetNode, site: Site) -> Behaviour:
+    expressions = {key: parse_expression(text) for key, text in model.set.items()}
+    return Assignment(site.name, site.path, expressions, site.scope)
+
+
+def _parallel(model: ParallelBody, site: Site) -> Behaviour:
+    count = len(site.children)
+    amounts: Mapping[object, int] = {"all": count, "any": 1}
+    succeed: int | frozenset[int]
+    if isinstance(model.succeed, tuple):
+        succeed = frozenset(site.names.index(name) for name in model.succeed)
+    else:
+        succeed = model.succeed if isinstance(model.succeed, int) else amounts[model.succeed]
+    fail = model.fail if isinstance(model.fail, int) else amounts.get(model.fail)
+    wait = model.on_done == "wait"
+    return Parallel(site.name, site.children, succeed=succeed, fail=fail, wait=wait)
+
+
+def _retry(model: RetryBody, site: Site) -> Behaviour:
+    return Retry(site.name, site.child, times=model.times, delay_s=model.delay_s, clock=site.clock)
+
+
+def _repeat(model: RepeatBody, site: Site) -> Behaviour:
+    return Repeat(site.name, site.child, times=model.times)
+
+
+def _timeout(model: TimeoutBody, site: Site) -> Behaviour:
+    return Timeout(site.name, site.child, seconds=model.seconds, clock=site.clock)
+
+
+def _cooldown(model: CooldownBody, site: Site) -> Behaviour:
+    return Cooldown(site.name, site.child, seconds=model.seconds, clock=site.clock)
+
+
+def _for_each(model: ForEachBody, site: Site) -> Behaviour:
+    return ForEach(
+        site.name,
+        site.path,
+        site.child,
+        item=model.item.removeprefix("$"),
+        items=parse_value(model.in_),
+        scope=site.scope,
+    )
+
+
+_ASSEMBLERS: Mapping[str, Callable[[Any, Site], Behaviour]] = {
+    "when": _when,
+    "set": _set,
+    "sequence": lambda _, site: SequenceNode(site.name, True, [*site.children]),
+    "reactive_sequence": lambda _, site: SequenceNode(site.name, False, [*site.children]),
+    "selector": lambda _, site: Selector(site.name, True, [*site.children]),
+    "reactive_selector": lambda _, site: Selector(site.name, False, [*site.children]),
+    "parallel": _parallel,
+    "retry": _retry,
+    "repeat": _repeat,
+    "timeout": _timeout,
+    "cooldown": _cooldown,
+    "for_each": _for_each,
+    "run_once": lambda _, site: OneShot(site.name, site.child, OneShotPolicy.ON_COMPLETION),
+    "inverter": lambda _, site: Inverter(site.name, site.child),
+    "force_success": lambda _, site: FailureIsSuccess(site.name, site.child),
+    "force_failure": lambda _, site: SuccessIsFailure(site.name, site.child),
+}
+
+
+def guard(model: NodeModel, name: str, path: str, child: Behaviour, scope: Scope) -> Behaviour:
+    """Return the conditions and assignments around a node as a node around it."""
+    return Guard(
+        name,
+        path,
+        child,
+        conditions={key: parse_expression(text) for key, text in model.guards.items()},
+        assignments={
+            _ENDS[keyword]: {key: parse_expression(text) for key, text in texts.items()}
+            for keyword, texts in model.endings.items()
+        },
+        scope=scope,
+    )

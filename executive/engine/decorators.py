@@ -1,0 +1,246 @@
+"""Nodes with one child.
+
+py_trees' own are used where they do what they say; these are here because its Retry and
+Repeat know no delay, its Timeout reads the machine's clock and ticks the child even when it
+is late (trap e8), and its ForEach runs the child for an empty list (trap e9).
+"""
+
+from collections.abc import Iterator, Mapping
+
+from py_trees.behaviour import Behaviour
+from py_trees.common import Status
+from py_trees.decorators import Decorator
+
+from executive.core.clock import Clock
+from executive.core.errors import InputError
+from executive.core.outcome import Outcome, failure
+from executive.engine.expression import Expression
+from executive.engine.nodes import answer, assign
+from executive.engine.scope import Scope, evaluate
+from executive.engine.values import Value
+
+
+class Gated(Decorator):
+    """A decorator that may answer without ticking its child.
+
+    Attributes:
+        status: Answer of the last tick.
+        outcome: Why it answered by itself, None where the child decided.
+    """
+
+    status: Status
+
+    def __init__(self, name: str, child: Behaviour) -> None:
+        """Decorate a child."""
+        super().__init__(name, child)
+        self.outcome: Outcome | None = None
+
+    def before(self) -> Status | None:
+        """Return the answer of this tick, or None to tick the child."""
+        return None
+
+    def tick(self) -> Iterator[Behaviour]:
+        """Ask `before`, and `update` if that left it to the child."""
+        if self.status is not Status.RUNNING:
+            self.outcome = None
+            self.initialise()
+        status = self.before()
+        if status is None:
+            yield from self.decorated.tick()
+            status = self.update()
+        if status is not Status.RUNNING:
+            self.stop(status)
+        self.status = status
+        yield self
+
+    def update(self) -> Status:
+        """Return the answer after the child was ticked."""
+        return self.decorated.status
+
+    def fail(self, code: str, text: str) -> Status:
+        """Answer with a failure of its own."""
+        self.outcome = failure(code, text)
+        return Status.FAILURE
+
+
+class Retry(Gated):
+    """Runs the child again when it fails; at most one attempt in a tick."""
+
+    def __init__(
+        self, name: str, child: Behaviour, *, times: int, delay_s: float, clock: Clock
+    ) -> None:
+        """Allow `times` attempts with a pause after each failure [s]."""
+        super().__init__(name, child)
+        self._times, self._delay_s, self._clock = times, delay_s, clock
+        self._failures, self._resume_s = 0, 0.0
+
+    def initialise(self) -> None:
+        """Forget earlier attempts."""
+        self._failures, self._resume_s = 0, self._clock.now_s()
+
+    def before(self) -> Status | None:
+        """Wait until the pause is over."""
+        return Status.RUNNING if self._clock.now_s() < self._resume_s else None
+
+    def update(self) -> Status:
+        """Count a failure and go on, unless it was the last attempt."""
+        if self.decorated.status is not Status.FAILURE:
+            return self.decorated.status
+        self._failures += 1
+        self._resume_s = self._clock.now_s() + self._delay_s
+        return Status.FAILURE if self._failures >= self._times else Status.RUNNING
+
+
+class Repeat(Gated):
+    """Runs the child again when it succeeds; at most one round in a tick."""
+
+    def __init__(self, name: str, child: Behaviour, *, times: int) -> None:
+        """Ask for `times` successes."""
+        super().__init__(name, child)
+        self._times, self._successes = times, 0
+
+    def initialise(self) -> None:
+        """Forget earlier rounds."""
+        self._successes = 0
+
+    def update(self) -> Status:
+        """Count a success and go on, unless it was the last round."""
+        if self.decorated.status is not Status.SUCCESS:
+            return self.decorated.status
+        self._successes += 1
+        return Status.SUCCESS if self._successes >= self._times else Status.RUNNING
+
+
+class Timeout(Gated):
+    """Halts the child and fails when it is not done in time."""
+
+    def __init__(self, name: str, child: Behaviour, *, seconds: float, clock: Clock) -> None:
+        """Allow a number of seconds on the clock."""
+        super().__init__(name, child)
+        self._seconds, self._clock, self._deadline_s = seconds, clock, 0.0
+
+    def initialise(self) -> None:
+        """Start the clock."""
+        self._deadline_s = self._clock.now_s() + self._seconds
+
+    def before(self) -> Status | None:
+        """Fail when it is late; the child gets no tick then."""
+        if self._clock.now_s() < self._deadline_s:
+            return None
+        return self.fail("timeout", f"not done after {self._seconds:g} s")
+
+
+class Cooldown(Gated):
+    """Fails without starting the child for a while after it has finished."""
+
+    def __init__(self, name: str, child: Behaviour, *, seconds: float, clock: Clock) -> None:
+        """Rest for a number of seconds on the clock."""
+        super().__init__(name, child)
+        self._seconds, self._clock = seconds, clock
+        self._ready_s: float | None = None
+
+    def before(self) -> Status | None:
+        """Fail while it rests."""
+        if self._ready_s is None or self.status is Status.RUNNING:
+            return None
+        left_s = self._ready_s - self._clock.now_s()
+        return self.fail("cooldown", f"rests for another {left_s:g} s") if left_s > 0.0 else None
+
+    def update(self) -> Status:
+        """Begin to rest when the child has finished."""
+        if self.decorated.status is not Status.RUNNING:
+            self._ready_s = self._clock.now_s() + self._seconds
+        return self.decorated.status
+
+
+class ForEach(Gated):
+    """Runs the child once for each item of a list, one item in a tick at most."""
+
+    def __init__(
+        self, name: str, path: str, child: Behaviour, *, item: str, items: Value, scope: Scope
+    ) -> None:
+        """Put each of `items` under the key `item` in turn."""
+        super().__init__(name, child)
+        self._path, self._item, self._items, self._scope = path, item, items, scope
+        self._left: list[object] = []
+
+    def initialise(self) -> None:
+        """Take the list as it is now.
+
+        Raises:
+            InputError: It is no list.
+        """
+        items = evaluate(self._items, self._scope)
+        if isinstance(items, (str, bytes)) or not hasattr(items, "__iter__"):
+            raise InputError(f"for_each: expected a list, got {items!r}")
+        self._left = list(items)
+
+    def before(self) -> Status | None:
+        """Succeed when there is nothing left; otherwise show the child the next item."""
+        if self.status is Status.RUNNING and self.decorated.status is Status.RUNNING:
+            return None
+        if not self._left:
+            return Status.SUCCESS
+        self._scope.write(self._item, self._left.pop(0), self._path)
+        return None
+
+    def update(self) -> Status:
+        """Go on to the next item when the child has succeeded."""
+        done = self.decorated.status is Status.SUCCESS
+        return Status.RUNNING if done and self._left else self.decorated.status
+
+
+class Guard(Gated):
+    """Conditions and assignments around a node: `if`, `unless`, `while`, `on_...`."""
+
+    def __init__(
+        self,
+        name: str,
+        path: str,
+        child: Behaviour,
+        *,
+        conditions: Mapping[str, Expression],
+        assignments: Mapping[Status, Mapping[str, Expression]],
+        scope: Scope,
+    ) -> None:
+        """Guard a node.
+
+        Args:
+            name: Name of the node.
+            path: Its path, which is the writer of its assignments.
+            child: The node.
+            conditions: Expressions by `if`, `unless`, `while`.
+            assignments: Expressions by key, by how the node ends; INVALID when it is halted.
+            scope: Names of its tree.
+        """
+        super().__init__(name, child)
+        self._path, self._scope = path, scope
+        self._conditions, self._assignments = conditions, assignments
+        self._starts = False
+
+    def initialise(self) -> None:
+        """Note that the conditions of a start are due."""
+        self._starts = True
+
+    def before(self) -> Status | None:
+        """Ask the conditions; those of a start only once."""
+        starts, self._starts = self._starts, False
+        if starts and not self._holds("if"):
+            return Status.FAILURE
+        if starts and "unless" in self._conditions and self._holds("unless"):
+            self.outcome = None
+            return Status.SUCCESS
+        self.outcome = None
+        return None if self._holds("while") else Status.FAILURE
+
+    def _holds(self, guard: str) -> bool:
+        if guard not in self._conditions:
+            return True
+        self.outcome = answer(self._conditions[guard], self._scope)
+        return self.outcome.reason is None
+
+    def terminate(self, new_status: Status) -> None:
+        """Set the keys that belong to how the node ends."""
+        halted_idle = new_status is Status.INVALID and self.status is not Status.RUNNING
+        if not halted_idle:
+            assign(self._assignments.get(new_status, {}), self._scope, self._path)

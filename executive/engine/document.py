@@ -1,0 +1,407 @@
+"""The YAML documents as pydantic models: trees, missions, cells and the nodes of a tree.
+
+A model says what may stand where; what only shows with the skills and subtrees at hand
+(ports, wiring, names) is for `executive.engine.checks`. The JSON schema that editors use is
+generated from these models.
+"""
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Union
+
+from pydantic import (
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Discriminator,
+    Field,
+    GetCoreSchemaHandler,
+    GetJsonSchemaHandler,
+    StringConstraints,
+    Tag,
+    WithJsonSchema,
+)
+from pydantic_core import PydanticCustomError, core_schema
+
+Name = Annotated[str, StringConstraints(strict=True, pattern=r"^[a-z][a-z0-9_]*$")]
+Text = Annotated[str, Field(strict=True)]
+Reference = Annotated[str, StringConstraints(strict=True, pattern=r"^\$[a-z][a-z0-9_]*$")]
+Count = Annotated[int, Field(strict=True, ge=1)]
+Seconds = Annotated[float, Field(strict=True, gt=0.0, allow_inf_nan=False)]
+Delay = Annotated[float, Field(strict=True, ge=0.0, allow_inf_nan=False)]
+
+
+def _as_text(value: object) -> object:
+    """Write YAML's true, false and numbers as the expressions that they also are."""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    return repr(value) if isinstance(value, (int, float)) else value
+
+
+ExpressionText = Annotated[
+    str,
+    BeforeValidator(_as_text),
+    Field(strict=True, min_length=1),
+    WithJsonSchema({"type": ["string", "boolean", "number"]}),
+]
+Assignments = Annotated[dict[Name, ExpressionText], Field(min_length=1)]
+
+
+class Model(BaseModel):
+    """Base of everything that is read from a file."""
+
+    model_config = ConfigDict(
+        frozen=True, extra="forbid", hide_input_in_errors=True, defer_build=True
+    )
+
+
+class NodeModel(Model):
+    """What every node may say about itself."""
+
+    kind: ClassVar[str]
+
+    name: Name | None = Field(None, description="Name in paths; the kind or skill otherwise.")
+    about: Text = Field("", description="One line for people.")
+    if_: ExpressionText | None = Field(
+        None, alias="if", description="Asked once before it starts; when false, the node fails."
+    )
+    unless: ExpressionText | None = Field(
+        None, description="Asked once before it starts; when true, the node succeeds."
+    )
+    while_: ExpressionText | None = Field(
+        None, alias="while", description="Asked every tick; when false, it is halted and fails."
+    )
+    on_success: Assignments | None = Field(None, description="Keys to set when it succeeds.")
+    on_failure: Assignments | None = Field(None, description="Keys to set when it fails.")
+    on_halt: Assignments | None = Field(None, description="Keys to set when it is halted.")
+
+    @property
+    def guards(self) -> dict[str, str]:
+        """Conditions around the node, by keyword."""
+        texts = {"if": self.if_, "unless": self.unless, "while": self.while_}
+        return {keyword: text for keyword, text in texts.items() if text is not None}
+
+    @property
+    def endings(self) -> dict[str, dict[str, str]]:
+        """Assignments when the node ends, by keyword."""
+        given = {
+            "on_success": self.on_success,
+            "on_failure": self.on_failure,
+            "on_halt": self.on_halt,
+        }
+        return {keyword: texts for keyword, texts in given.items() if texts}
+
+
+class SkillNode(NodeModel):
+    """Run a skill."""
+
+    kind = "skill"
+
+    skill: Name = Field(description="Name of the skill; `cellwright skills` lists them.")
+    in_: dict[Name, Any] = Field(
+        default_factory=dict, alias="in", description="Inputs: literals, `$key` or `$expression`."
+    )
+    out: dict[Name, Reference] = Field(
+        default_factory=dict, description="Keys that its outputs are written to, as `$key`."
+    )
+
+
+class SubtreeNode(NodeModel):
+    """Run another tree, which sees only the ports that it declares."""
+
+    kind = "subtree"
+
+    subtree: Name = Field(description="Name of the tree; its file has the same name.")
+    in_: dict[Name, Any] = Field(
+        default_factory=dict, alias="in", description="Inputs: literals, `$key` or `$expression`."
+    )
+    out: dict[Name, Reference] = Field(
+        default_factory=dict, description="Keys that its outputs are written to, as `$key`."
+    )
+
+
+class WhenNode(NodeModel):
+    """Succeed when an expression is true, fail when it is false."""
+
+    kind = "when"
+
+    when: ExpressionText
+
+
+class SetNode(NodeModel):
+    """Set keys of the blackboard to the values of expressions."""
+
+    kind = "set"
+
+    set: Assignments
+
+
+class _Under:
+    """Reads a node whose own keys stand under its kind: `sequence: {name: ..., children: ...}`.
+
+    A plain list there is the list of its children.
+    """
+
+    def __init__(self, kind: str) -> None:
+        self._kind = kind
+
+    def _body(self, value: Any) -> Any:
+        beside = [key for key in value if key != self._kind]
+        if beside:
+            raise PydanticCustomError(
+                "beside",
+                "{key} stands beside {kind}; try it under {kind}",
+                {"key": repr(beside[0]), "kind": repr(self._kind)},
+            )
+        body = value[self._kind]
+        return {"children": body} if isinstance(body, list) else body
+
+    def __get_pydantic_core_schema__(
+        self, source: Any, handler: GetCoreSchemaHandler
+    ) -> core_schema.CoreSchema:
+        return core_schema.no_info_before_validator_function(self._body, handler(source))
+
+    def __get_pydantic_json_schema__(
+        self, schema: core_schema.CoreSchema, handler: GetJsonSchemaHandler
+    ) -> dict[str, Any]:
+        body = handler(schema)
+        return {
+            "type": "object",
+            "properties": {self._kind: body},
+            "required": [self._kind],
+            "additionalProperties": False,
+        }
+
+
+class BlockBody(NodeModel):
+    """What stands inside a node with children."""
+
+    children: Annotated[tuple["Node", ...], Field(min_length=1)]
+
+
+class DecoratorBody(NodeModel):
+    """What stands inside a node with one child."""
+
+    child: "Node"
+
+
+class SequenceBody(BlockBody):
+    """Children in order until one fails; goes on where it was."""
+
+    kind = "sequence"
+    memory: Literal[True] = Field(True, description="A sequence goes on where it was.")
+
+
+class ReactiveSequenceBody(BlockBody):
+    """Children in order until one fails; begins with the first in every tick."""
+
+    kind = "reactive_sequence"
+    memory: Literal[False] = Field(False, description="It begins with the first in every tick.")
+
+
+class SelectorBody(BlockBody):
+    """Children in order until one succeeds; goes on where it was."""
+
+    kind = "selector"
+    memory: Literal[True] = Field(True, description="A selector goes on where it was.")
+
+
+class ReactiveSelectorBody(BlockBody):
+    """Children in order until one succeeds; begins with the first in every tick."""
+
+    kind = "reactive_selector"
+    memory: Literal[False] = Field(False, description="It begins with the first in every tick.")
+
+
+class ParallelBody(BlockBody):
+    """All children in every tick, until enough have succeeded or failed."""
+
+    kind = "parallel"
+    succeed: Literal["all", "any"] | Count | tuple[Name, ...] = Field(
+        "all", description="How many children must succeed: all, any, a count, or these by name."
+    )
+    fail: Literal["any", "all"] | Count | None = Field(
+        None,
+        description="How many failures make it fail: any, a count, or all; "
+        "as soon as it cannot succeed without it.",
+    )
+    on_done: Literal["stop", "wait"] = Field(
+        "stop", description="When it is decided: stop the children that run, or wait for them."
+    )
+
+
+class RetryBody(DecoratorBody):
+    """Run the child again when it fails, one attempt a tick at most."""
+
+    kind = "retry"
+    times: Count = Field(description="Attempts in all.")
+    delay_s: Delay = Field(0.0, description="Pause after a failure [s].")
+
+
+class RepeatBody(DecoratorBody):
+    """Run the child again when it succeeds, one round a tick at most."""
+
+    kind = "repeat"
+    times: Count = Field(description="Successes that are needed.")
+
+
+class TimeoutBody(DecoratorBody):
+    """Halt the child and fail when it takes too long."""
+
+    kind = "timeout"
+    seconds: Seconds = Field(description="On the cell's clock [s].")
+
+
+class CooldownBody(DecoratorBody):
+    """Fail without starting the child for a while after it has finished."""
+
+    kind = "cooldown"
+    seconds: Seconds = Field(description="On the cell's clock [s].")
+
+
+class ForEachBody(DecoratorBody):
+    """Run the child once for each item of a list, until it fails."""
+
+    kind = "for_each"
+    item: Reference = Field(description="Key that holds the item, as `$key`.")
+    in_: Any = Field(alias="in", description="The list: `$key`, `$expression` or a literal list.")
+
+
+class RunOnceBody(DecoratorBody):
+    """Run the child until it has finished once, then answer the same."""
+
+    kind = "run_once"
+
+
+class InverterBody(DecoratorBody):
+    """Succeed when the child fails, fail when it succeeds."""
+
+    kind = "inverter"
+
+
+class ForceSuccessBody(DecoratorBody):
+    """Succeed whatever the child answers when it has finished."""
+
+    kind = "force_success"
+
+
+class ForceFailureBody(DecoratorBody):
+    """Fail whatever the child answers when it has finished."""
+
+    kind = "force_failure"
+
+
+LEAVES: dict[str, type[NodeModel]] = {
+    model.kind: model for model in (SkillNode, SubtreeNode, WhenNode, SetNode)
+}
+BLOCKS: dict[str, type[NodeModel]] = {
+    model.kind: model
+    for model in (
+        *(SequenceBody, ReactiveSequenceBody, SelectorBody, ReactiveSelectorBody, ParallelBody),
+        *(RetryBody, RepeatBody, TimeoutBody, CooldownBody, ForEachBody, RunOnceBody),
+        *(InverterBody, ForceSuccessBody, ForceFailureBody),
+    )
+}
+KINDS = (*LEAVES, *BLOCKS)
+
+
+def kind_of(value: object) -> str | None:
+    """Return the kind of a node as it stands in a file, None unless it has exactly one."""
+    kinds = [key for key in value if key in KINDS] if isinstance(value, Mapping) else []
+    return kinds[0] if len(kinds) == 1 else None
+
+
+if TYPE_CHECKING:
+    Node = NodeModel
+else:
+    # Discriminated by its kind, so that a fault speaks of that kind alone.
+    Node = Annotated[
+        Union[  # noqa: UP007 - its members come out of tables
+            tuple(
+                [Annotated[model, Tag(kind)] for kind, model in LEAVES.items()]
+                + [Annotated[model, _Under(kind), Tag(kind)] for kind, model in BLOCKS.items()]
+            )
+        ],
+        Discriminator(kind_of),
+    ]
+
+
+class OutPort(Model):
+    """An output that a tree declares."""
+
+    type: Text = Field(description="Type name, `list[NAME]` or `NAME | None`.")
+    unit: Text = Field("", description="SI unit such as m, rad or m/s.")
+    about: Text = Field("", description="One line for people.")
+
+
+class InPort(OutPort):
+    """An input that a tree declares."""
+
+    default: Any = Field(None, description="Value when it is not given; required without one.")
+
+    @property
+    def has_default(self) -> bool:
+        """Whether a default is written, be it null."""
+        return "default" in self.model_fields_set
+
+
+class TreeDocument(Model):
+    """A tree that missions and other trees use as a subtree."""
+
+    format: Literal[1]
+    tree: Name = Field(description="Its name, which is also the name of its file.")
+    about: Text = ""
+    in_: dict[Name, InPort] = Field(default_factory=dict, alias="in")
+    out: dict[Name, OutPort] = Field(default_factory=dict)
+    root: Node
+
+    @property
+    def name(self) -> str:
+        """Name of the tree."""
+        return self.tree
+
+
+class MissionDocument(Model):
+    """A tree with the cell that it runs on, what is set up there, and limits."""
+
+    format: Literal[1]
+    mission: Name = Field(description="Its name, which is also the name of its file.")
+    about: Text = ""
+    cell: Name = Field(description="Name of the cell that it runs on.")
+    scenario: dict[str, Any] = Field(
+        default_factory=dict, description="What is set up in the cell; its world checks it."
+    )
+    timeout_s: Seconds | None = Field(None, description="Limit on the cell's clock [s].")
+    tick_hz: Annotated[float, Field(strict=True, gt=0.0, le=1000.0)] = 10.0
+    in_: dict[Name, InPort] = Field(default_factory=dict, alias="in")
+    out: dict[Name, OutPort] = Field(default_factory=dict)
+    root: Node
+
+    @property
+    def name(self) -> str:
+        """Name of the mission."""
+        return self.mission
+
+
+class CellDocument(Model):
+    """A cell: the world behind it and how that is configured."""
+
+    format: Literal[1]
+    cell: Name = Field(description="Its name, which is also the name of its file.")
+    about: Text = ""
+    world: Name = Field(description="Name of the world, simulated or real.")
+    config: dict[str, Any] = Field(
+        default_factory=dict, description="Configuration of the world, which checks it."
+    )
+
+    @property
+    def name(self) -> str:
+        """Name of the cell."""
+        return self.cell
+
+
+Document = TreeDocument | MissionDocument | CellDocument
+DOCUMENTS: Mapping[str, type[Document]] = {
+    "tree": TreeDocument,
+    "mission": MissionDocument,
+    "cell": CellDocument,
+}

@@ -1,0 +1,167 @@
+"""Finds documents by name and reads each file once.
+
+A tree, mission or cell NAME is the file `NAME.yaml` in one of the folders `trees`,
+`subtrees`, `missions` or `cells`, or in the folder of the document that names it. Folders
+are searched in a fixed order: next to the file that was asked for, the search paths that
+were given, and what ships with the package; the first file wins.
+"""
+
+import importlib.util
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import Any
+
+from executive.core.errors import Fault, InputError
+from executive.core.registry import Registry, closest
+from executive.core.skill import REQUIRED, Port
+from executive.engine.document import (
+    Document,
+    InPort,
+    MissionDocument,
+    OutPort,
+    TreeDocument,
+)
+from executive.engine.outline import TreeSpec, outline
+from executive.engine.porttypes import fit, parse_type
+from executive.engine.sources import Source, read_source
+from executive.engine.validation import validate
+
+FOLDERS = ("subtrees", "missions", "cells")
+
+
+def packaged_trees() -> Path:
+    """Return the folder of the trees that ship with the package."""
+    spec = importlib.util.find_spec("trees")
+    if spec is None or spec.origin is None:
+        raise InputError("the package 'trees' is not installed; try pip install of this project")
+    return Path(spec.origin).parent
+
+
+def search_folders(beside: Path | None, search_paths: Iterable[Path]) -> tuple[Path, ...]:
+    """Return every folder that is searched, in order.
+
+    Args:
+        beside: A file that was asked for by its path.
+        search_paths: Folders that the user gave.
+    """
+    roots = [beside.parent, beside.parent.parent] if beside else []
+    roots += [*search_paths, packaged_trees()]
+    folders = (folder for root in roots for folder in (root, *(root / name for name in FOLDERS)))
+    return tuple(dict.fromkeys(folders))
+
+
+class Library:
+    """The documents behind one question of the user, and everything wrong with them."""
+
+    def __init__(self, types: Registry[type], folders: Sequence[Path]) -> None:
+        """Know the types that ports may have, and where to look."""
+        self._types = types
+        self._folders = tuple(folders)
+        self._read: dict[Path, tuple[Source, Document | None, TreeSpec | None]] = {}
+        self.faults: list[Fault] = []
+
+    @property
+    def sources(self) -> tuple[Source, ...]:
+        """Every file that was read, in order."""
+        return tuple(source for source, _, _ in self._read.values())
+
+    def find(self, name: str, kind: str) -> Path:
+        """Return the file of a document.
+
+        Args:
+            name: Its name.
+            kind: `tree`, `mission` or `cell`, for the message.
+
+        Raises:
+            InputError: There is none.
+        """
+        for folder in self._folders:
+            if (folder / f"{name}.yaml").is_file():
+                return folder / f"{name}.yaml"
+        known = {file.stem for folder in self._folders for file in folder.glob("*.yaml")}
+        raise InputError(f"unknown {kind} {name!r}; {closest(name, sorted(known))}")
+
+    def document(self, file: Path) -> Document | None:
+        """Return the document in a file, None where it has faults.
+
+        Raises:
+            InputError: The file cannot be read.
+        """
+        return self._entry(file)[1]
+
+    def tree(self, file: Path) -> TreeSpec | None:
+        """Return the tree or mission in a file, None where it has faults or is neither.
+
+        Raises:
+            InputError: The file cannot be read.
+        """
+        return self._entry(file)[2]
+
+    def _entry(self, file: Path) -> tuple[Source, Document | None, TreeSpec | None]:
+        key = file.resolve()
+        if key not in self._read:
+            source = read_source(str(file), _text(file))
+            document, faults = validate(source)
+            tree = None
+            if document is not None:
+                faults = _misnamed(document, source)
+            if isinstance(document, (TreeDocument, MissionDocument)):
+                tree, more = self._tree(document, source)
+                faults += more
+            self.faults += faults
+            self._read[key] = source, document, tree
+        return self._read[key]
+
+    def _tree(
+        self, document: TreeDocument | MissionDocument, source: Source
+    ) -> tuple[TreeSpec, list[Fault]]:
+        faults: list[Fault] = []
+        inputs = {
+            name: self._port(port, source, ("in", name), faults)
+            for name, port in document.in_.items()
+        }
+        outputs = {
+            name: self._port(port, source, ("out", name), faults)
+            for name, port in document.out.items()
+        }
+        for name in inputs.keys() & outputs.keys():
+            line, column = source.key_mark(("out", name))
+            message = f"{name!r} is an input and an output; try a second name"
+            faults.append(Fault(source.file, line, column, "", message))
+        return TreeSpec(document, source, outline(document, source), inputs, outputs), faults
+
+    def _port(
+        self, port: OutPort, source: Source, at: tuple[str, str], faults: list[Fault]
+    ) -> Port:
+        kind: Any = Any
+        default: object = REQUIRED
+        where: tuple[str, ...] = (*at, "type")
+        try:
+            kind = parse_type(port.type, self._types)
+            if isinstance(port, InPort) and port.has_default:
+                where = (*at, "default")
+                default = fit(port.default, kind)
+        except (InputError, ValueError) as error:
+            line, column = source.value_mark(where)
+            faults.append(Fault(source.file, line, column, "", f"{'/'.join(at)}: {error}"))
+        return Port(kind, port.about, port.unit, default)
+
+
+def _text(file: Path) -> str:
+    try:
+        return file.read_text(encoding="utf-8")
+    except OSError as error:
+        raise InputError(f"{file}: cannot be read: {error.strerror}") from None
+    except UnicodeDecodeError as error:
+        raise InputError(f"{file}: is not UTF-8 text: {error.reason}") from None
+
+
+def _misnamed(document: Document, source: Source) -> list[Fault]:
+    """Say so when a file does not have the name of what is in it: nobody would find it."""
+    stem = Path(source.file).stem
+    if stem == document.name:
+        return []
+    kind = next(iter(set(type(document).model_fields) & {"tree", "mission"}), "cell")
+    line, column = source.value_mark((kind,))
+    message = f"{kind} {document.name!r} is in a file named {stem!r}; expected the same name"
+    return [Fault(source.file, line, column, "", message)]

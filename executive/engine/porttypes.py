@@ -1,0 +1,293 @@
+"""Types of ports: their names in YAML, which fits which, and literals made to fit.
+
+Names are `bool int float str any`, those that the application registers, `list[T]` and
+`T | None`. A `list[T]` is any ordered collection: a skill may ask for a tuple or give one.
+An int fits where a float is asked for; a bool is no number.
+"""
+
+import ast
+import collections.abc
+import dataclasses
+import types
+import typing
+from collections.abc import Sequence
+from enum import Enum
+from typing import Any, Literal, Union
+
+from executive.core.errors import InputError
+from executive.core.registry import Registry, closest
+
+_BUILT_IN: dict[str, Any] = {
+    "any": Any,
+    "bool": bool,
+    "float": float,
+    "int": int,
+    "str": str,
+}
+_SCALARS = (bool, int, float, str)
+_SEQUENCES = (list, tuple, collections.abc.Sequence)
+_MAPPINGS = (dict, collections.abc.Mapping)
+
+
+def parse_type(text: str, registered: Registry[type]) -> Any:
+    """Return the type that a name in YAML stands for.
+
+    Args:
+        text: Such as `float`, `list[Knot]` or `CameraFrame | None`.
+        registered: Types of the application by name.
+
+    Raises:
+        InputError: No such type, or not written like one.
+    """
+    try:
+        tree = ast.parse(text.strip(), mode="eval").body
+    except SyntaxError:
+        raise InputError(_no_type(text)) from None
+    return _type_of(tree, text, registered)
+
+
+def _type_of(tree: ast.expr, text: str, registered: Registry[type]) -> Any:
+    match tree:
+        case ast.Name(id=name):
+            return _named(name, registered)
+        case ast.Constant(value=None):
+            return type(None)
+        case ast.Subscript(value=ast.Name(id="list"), slice=item):
+            return Sequence[_type_of(item, text, registered)]  # type: ignore[misc]  # at run time
+        case ast.BinOp(left=left, op=ast.BitOr(), right=right):
+            members = _type_of(left, text, registered), _type_of(right, text, registered)
+            return Union[members]  # noqa: UP007 - the members are values here
+    raise InputError(_no_type(text))
+
+
+def _named(name: str, registered: Registry[type]) -> Any:
+    if name in registered:
+        return registered.get(name)
+    if name in _BUILT_IN:
+        return _BUILT_IN[name]
+    known = [*_BUILT_IN, *registered, "list[...]"]
+    raise InputError(f"unknown type {name!r}; {closest(name, known)}")
+
+
+def _no_type(text: str) -> str:
+    return f"{text!r} is not a type; expected a name, list[NAME] or NAME | None"
+
+
+def type_name(kind: Any) -> str:
+    """Return a type as a message shows it: `list[Knot]`, `float | None`."""
+    kind = _bare(kind)
+    if kind is Any:
+        return "any"
+    if kind is None or kind is type(None):
+        return "None"
+    members = union_members(kind)
+    if members:
+        return " | ".join(type_name(member) for member in members)
+    if typing.get_origin(kind) is Literal:
+        return " | ".join(repr(value) for value in typing.get_args(kind))
+    if is_sequence(kind):
+        return f"list[{type_name(item_type(kind))}]"
+    return str(getattr(_class(kind), "__name__", kind))
+
+
+def union_members(kind: Any) -> tuple[Any, ...]:
+    """Return the members of a union, nothing for any other type."""
+    if typing.get_origin(kind) in (Union, types.UnionType):
+        return typing.get_args(kind)
+    return ()
+
+
+def is_sequence(kind: Any) -> bool:
+    """Return whether a type is an ordered collection other than a string."""
+    return _class(_bare(kind)) in _SEQUENCES
+
+
+def item_type(kind: Any) -> Any:
+    """Return the type of the items of an ordered collection."""
+    items = [arg for arg in typing.get_args(_bare(kind)) if arg is not Ellipsis]
+    if not items:
+        return Any
+    return items[0] if len(set(items)) == 1 else Union[tuple(items)]  # noqa: UP007 - values
+
+
+def accepts(target: Any, source: Any) -> bool:
+    """Return whether every value of type `source` may stand where `target` is asked for."""
+    target, source = _bare(target), _bare(source)
+    if Any in (target, source) or target == source:
+        return True
+    if members := union_members(source):
+        return all(accepts(target, member) for member in members)
+    if members := union_members(target):
+        return any(accepts(member, source) for member in members)
+    if Literal in (typing.get_origin(target), typing.get_origin(source)):
+        return _literal_accepts(target, source)
+    if is_sequence(target) and is_sequence(source):
+        return _sequence_accepts(target, source)
+    return _class_accepts(_class(target), _class(source))
+
+
+def _literal_accepts(target: Any, source: Any) -> bool:
+    if typing.get_origin(source) is not Literal:
+        return False
+    values = typing.get_args(source)
+    if typing.get_origin(target) is Literal:
+        return set(values) <= set(typing.get_args(target))
+    return all(accepts(target, type(value)) for value in values)
+
+
+def _sequence_accepts(target: Any, source: Any) -> bool:
+    wanted, given = _fixed_length(target), _fixed_length(source)
+    if wanted is not None and given is not None:
+        return len(wanted) == len(given) and all(map(accepts, wanted, given))
+    return accepts(item_type(target), item_type(source))
+
+
+def _fixed_length(kind: Any) -> tuple[Any, ...] | None:
+    args = typing.get_args(kind)
+    is_tuple = _class(kind) is tuple and bool(args)
+    return args if is_tuple and Ellipsis not in args else None
+
+
+def _class_accepts(target: Any, source: Any) -> bool:
+    if source is bool:
+        return target is bool
+    if target is float:
+        return source in (int, float)
+    try:
+        return issubclass(source, target)
+    except TypeError:  # a protocol with data members: only a value can tell
+        return True
+
+
+def fit(value: object, kind: Any) -> Any:
+    """Return a literal as a value of a type.
+
+    Enums are found by value, ints become floats, lists tuples or arrays, and mappings
+    dataclasses, field by field.
+
+    Raises:
+        ValueError: It does not fit; the message says `expected ..., got ...`.
+    """
+    return _fit(value, _bare(kind), literal=True)
+
+
+def check(value: object, kind: Any) -> None:
+    """Check that a value at run time has the type that its port declares.
+
+    Raises:
+        ValueError: It has not; the message says `expected ..., got ...`.
+    """
+    _fit(value, _bare(kind), literal=False)
+
+
+def _fit(value: object, kind: Any, *, literal: bool) -> Any:
+    if kind is Any:
+        return value
+    if kind is None or kind is type(None):
+        return _expect(value is None, value, kind)
+    if members := union_members(kind):
+        return _fit_any(value, members, kind, literal=literal)
+    if typing.get_origin(kind) is Literal:
+        return _expect(value in typing.get_args(kind), value, kind)
+    if is_sequence(kind):
+        return _fit_sequence(value, kind, literal=literal)
+    return _fit_class(value, _class(kind), literal=literal)
+
+
+def _fit_any(value: object, members: tuple[Any, ...], kind: Any, *, literal: bool) -> Any:
+    for member in members:
+        try:
+            return _fit(value, _bare(member), literal=literal)
+        except ValueError:
+            continue
+    raise _misfit(value, kind)
+
+
+def _fit_sequence(value: object, kind: Any, *, literal: bool) -> Any:
+    if not isinstance(value, (list, tuple)):
+        raise _misfit(value, kind)
+    wanted = _fixed_length(kind)
+    if wanted is None:
+        wanted = (item_type(kind),) * len(value)
+    if len(wanted) != len(value):
+        raise ValueError(f"expected {len(wanted)} items, got {len(value)}")
+    items = [_fit(item, _bare(want), literal=literal) for item, want in zip(value, wanted)]  # noqa: B905
+    if not literal:
+        return value
+    return items if _class(kind) is list else tuple(items)
+
+
+def _fit_class(value: object, kind: Any, *, literal: bool) -> Any:
+    if kind in _SCALARS:
+        return _fit_scalar(value, kind)
+    if kind in _MAPPINGS:
+        return _expect(isinstance(value, collections.abc.Mapping), value, kind)
+    if isinstance(value, kind):
+        return value
+    if literal and isinstance(kind, type):
+        if issubclass(kind, Enum):
+            return _fit_enum(value, kind)
+        if dataclasses.is_dataclass(kind) and isinstance(value, dict):
+            return _fit_fields(value, kind)
+        if kind.__module__ == "numpy" and isinstance(value, list):
+            return _fit_array(value)
+    raise _misfit(value, kind)
+
+
+def _fit_scalar(value: object, kind: type) -> object:
+    if kind is float and isinstance(value, (int, float)) and not isinstance(value, bool):
+        return float(value)
+    is_number_not_bool = kind is bool or not isinstance(value, bool)
+    return _expect(isinstance(value, kind) and is_number_not_bool, value, kind)
+
+
+def _fit_enum(value: object, kind: type[Enum]) -> Enum:
+    try:
+        return kind(value)
+    except ValueError:
+        known = [str(member.value) for member in kind]
+        raise ValueError(
+            f"{kind.__name__} has no value {value!r}; {closest(str(value), known)}"
+        ) from None
+
+
+def _fit_fields(value: dict[str, object], kind: type) -> object:
+    hints = typing.get_type_hints(kind)
+    fields = {field.name: field for field in dataclasses.fields(kind) if field.init}
+    unknown = [name for name in value if name not in fields]
+    if unknown:
+        raise ValueError(
+            f"{kind.__name__} has no field {unknown[0]!r}; {closest(unknown[0], [*fields])}"
+        )
+    try:
+        return kind(**{name: fit(item, hints[name]) for name, item in value.items()})
+    except TypeError as error:
+        raise ValueError(f"expected {kind.__name__}: {error}") from None
+
+
+def _fit_array(value: list[object]) -> object:
+    import numpy as np
+
+    try:
+        return np.asarray(value, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise ValueError(f"expected an array of numbers, got {value!r}") from None
+
+
+def _expect(fits: bool, value: object, kind: Any) -> object:
+    if not fits:
+        raise _misfit(value, kind)
+    return value
+
+
+def _misfit(value: object, kind: Any) -> ValueError:
+    shown = repr(value) if isinstance(value, (*_SCALARS, type(None))) else type(value).__name__
+    return ValueError(f"expected {type_name(kind)}, got {shown}")
+
+
+def _bare(kind: Any) -> Any:
+    return typing.get_args(kind)[0] if typing.get_origin(kind) is typing.Annotated else kind
+
+
+def _class(kind: Any) -> Any:
+    return typing.get_origin(kind) or kind

@@ -1,0 +1,102 @@
+"""Names inside one tree, and the keys of the blackboard that they stand for."""
+
+from collections.abc import Mapping
+
+from executive.core.errors import InputError
+from executive.core.skill import REQUIRED
+from executive.engine.blackboard import Blackboard
+from executive.engine.values import Literal, Value, key_of
+
+
+class Scope:
+    """The names that the nodes of one tree see.
+
+    An input is another name for the key, expression or literal that the outer tree gave, so
+    it follows its source; an output is another name for the outer key. Every other name is a
+    key of this tree alone.
+    """
+
+    def __init__(self, path: str, blackboard: Blackboard) -> None:
+        """Begin with no ports; `path` is that of the root node."""
+        self._path = path
+        self._blackboard = blackboard
+        self._keys: dict[str, str] = {}
+        self._inputs: dict[str, tuple[Value, Scope]] = {}
+        self._defaults: dict[str, object] = {}
+
+    def bind_input(self, name: str, value: Value, outer: "Scope", default: object) -> None:
+        """Make an input stand for what the outer tree gave.
+
+        Args:
+            name: The input.
+            value: What it is wired to.
+            outer: Names of the outer tree.
+            default: Its value while the key that it is wired to has none, or `REQUIRED`.
+        """
+        key = key_of(value)
+        if key is None or key in outer._inputs or key in outer._defaults:
+            self._inputs[name] = value, outer
+        else:
+            self._keys[name] = outer.key(key)
+        if default is not REQUIRED:
+            self._defaults[name] = default
+
+    def bind_output(self, name: str, key: str, outer: "Scope") -> None:
+        """Make an output stand for a key of the outer tree."""
+        self._keys[name] = outer.key(key)
+
+    def key(self, name: str) -> str:
+        """Return the key on the blackboard that a name stands for."""
+        return self._keys.get(name, f"{self._path}:{name}")
+
+    def __getitem__(self, name: str) -> object:
+        if name in self._defaults and not self._has_source(name):
+            return self._defaults[name]
+        if name in self._inputs:
+            return evaluate(*self._inputs[name])
+        return self._blackboard.read(self.key(name))
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._defaults or self._has_source(str(name))
+
+    def _has_source(self, name: str) -> bool:
+        if name not in self._inputs:
+            return self.key(name) in self._blackboard
+        value, outer = self._inputs[name]
+        key = key_of(value)
+        return key is None or key in outer
+
+    def write(self, name: str, value: object, writer: str) -> None:
+        """Set a key."""
+        self._blackboard.write(self.key(name), value, writer)
+
+
+def evaluate(value: Value, scope: Scope) -> object:
+    """Return what a value comes to in a scope.
+
+    Raises:
+        InputError: A key has no value yet, or the expression fails on what it finds.
+    """
+    return value.value if isinstance(value, Literal) else value.evaluate(scope)
+
+
+def inputs_of(
+    wired: Mapping[str, Value], defaults: Mapping[str, object], scope: Scope
+) -> dict[str, object]:
+    """Return the inputs of a leaf that starts.
+
+    An input with a default has it while the key that it is wired to has no value.
+
+    Raises:
+        InputError: An input has neither.
+    """
+    values: dict[str, object] = {}
+    for port, value in wired.items():
+        key = key_of(value)
+        if port in defaults and key is not None and key not in scope:
+            continue
+        try:
+            values[port] = evaluate(value, scope)
+        except InputError as error:
+            raise InputError(f"input {port!r}: {error}") from error
+    return values

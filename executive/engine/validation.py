@@ -1,0 +1,179 @@
+"""Holds what was read against the models, and says what is wrong in the words of the file."""
+
+from collections import defaultdict
+from collections.abc import Mapping
+from typing import Any, Final
+
+from pydantic import ValidationError
+
+from executive.core.errors import Fault
+from executive.core.registry import closest
+from executive.engine.document import (
+    BLOCKS,
+    DOCUMENTS,
+    KINDS,
+    LEAVES,
+    Document,
+    InPort,
+    Model,
+    OutPort,
+)
+from executive.engine.outline import node_paths, value_at
+from executive.engine.sources import Source, YamlPath
+
+_EXPECTED: Final[Mapping[str, str]] = {
+    "bool_type": "true or false",
+    "dict_type": "a mapping",
+    "finite_number": "a finite number",
+    "float_type": "a number",
+    "greater_than": "a number above {gt}",
+    "greater_than_equal": "at least {ge}",
+    "int_type": "an integer",
+    "less_than_equal": "at most {le}",
+    "list_type": "a list",
+    "literal_error": "{expected}",
+    "model_type": "a mapping",
+    "string_too_short": "some text",
+    "string_type": "text",
+    "too_short": "at least {min_length}",
+    "tuple_type": "a list",
+}
+_NAME: Final = "a name of lower-case letters, digits and _"
+_REFERENCE: Final = "a key of the blackboard such as $image"
+
+
+def validate(source: Source) -> tuple[Document | None, list[Fault]]:
+    """Return the document that a source holds, or every fault that keeps it from being one."""
+    faults = list(source.faults)
+    if faults:
+        return None, faults
+    if not isinstance(source.data, dict):
+        kinds = ", ".join(DOCUMENTS)
+        return None, [_fault(source, (), f"expected a mapping with one of the keys {kinds}")]
+    found = [kind for kind in DOCUMENTS if kind in source.data]
+    if found == ["mission", "cell"]:  # a mission names its cell
+        found = ["mission"]
+    if len(found) != 1:
+        return None, [_fault(source, (), _no_single_kind(source.data, found))]
+    model = DOCUMENTS[found[0]]
+    try:
+        return model.model_validate(source.data), []
+    except ValidationError as error:
+        return None, _translate(source, model, error)
+    except RecursionError:
+        return None, [_fault(source, (), "nodes are nested too deeply")]
+
+
+def _no_single_kind(data: dict[str, object], found: list[str]) -> str:
+    if found:
+        return f"more than one kind of document: {', '.join(found)}; expected one a file"
+    odd = next((key for key in data if key not in ("format", "about", "in", "out", "root")), "")
+    hint = f"{odd!r} is none, {closest(odd, [*DOCUMENTS])}" if odd else f"one of {[*DOCUMENTS]}"
+    return f"a document says what it is by a key: {hint}"
+
+
+def _translate(source: Source, model: type[Document], error: ValidationError) -> list[Fault]:
+    """Say what pydantic found; what several members of a union say of one value is joined."""
+    said: dict[tuple[YamlPath, bool], list[str]] = defaultdict(list)
+    whole: list[Fault] = []
+    for detail in error.errors(include_url=False, include_input=False):
+        path, inner = _yaml_path(source.data, detail["loc"])
+        context = detail.get("ctx", {})
+        match detail["type"]:
+            case "extra_forbidden":
+                known = _known_keys(model, detail["loc"])
+                message = f"unknown key {path[-1]!r}; {closest(str(path[-1]), known)}"
+                whole.append(_fault(source, path, message, at_key=True))
+            case "missing":
+                whole.append(_fault(source, path, f"missing key {detail['loc'][-1]!r}"))
+            case "union_tag_not_found":
+                whole.append(_fault(source, path, _no_node(value_at(source.data, path))))
+            case "beside":
+                whole.append(_fault(source, path, detail["msg"]))
+            case "string_pattern_mismatch":
+                is_key = inner == ("[key]",)
+                expected = _REFERENCE if "$" in str(context["pattern"])[:3] else _NAME
+                said[path, is_key].append(expected)
+            case "too_short" if value_at(source.data, path):
+                continue  # items that are wrong themselves are not counted
+            case kind:
+                expected = _EXPECTED.get(kind, detail["msg"]).format(**context)
+                said[path, False].append(expected)
+    whole += [_misfit(source, *place, wanted) for place, wanted in said.items()]
+    return whole
+
+
+def _misfit(source: Source, path: YamlPath, is_key: bool, expected: list[str]) -> Fault:
+    value = path[-1] if is_key else value_at(source.data, path)
+    shown = repr(value) if isinstance(value, (str, int, float, bool)) else _what(value)
+    wanted = ", or ".join(dict.fromkeys(expected))
+    name = f"{path[-1]}: " if path and not is_key else ""
+    return _fault(source, path, f"{name}expected {wanted}; got {shown}", at_key=is_key)
+
+
+def _what(value: object) -> str:
+    if value is None:
+        return "nothing"
+    return "a mapping" if isinstance(value, dict) else f"a list of {len(value)}"  # type: ignore[arg-type]  # YAML has no more
+
+
+def _no_node(value: object) -> str:
+    if not isinstance(value, dict):
+        shown = repr(value) if isinstance(value, (str, int, float)) else _what(value)
+        return f"expected a node such as {{skill: NAME}}; got {shown}"
+    kinds = [key for key in value if key in KINDS]
+    if kinds:
+        return f"a node has one kind; got {' and '.join(kinds)}, try one list entry for each"
+    odd = next(iter(value), "")
+    return f"unknown kind of node {odd!r}; {closest(odd, [*KINDS])}"
+
+
+def _fault(source: Source, path: YamlPath, message: str, *, at_key: bool = False) -> Fault:
+    line, column = source.key_mark(path) if at_key else source.value_mark(path)
+    paths = node_paths(source.data)
+    above = (path[:length] for length in range(len(path), -1, -1))
+    node = next((paths[place] for place in above if place in paths), "")
+    return Fault(source.file, line, column, node, message)
+
+
+def _yaml_path(data: object, location: tuple[int | str, ...]) -> tuple[YamlPath, tuple[Any, ...]]:
+    """Return the path in the file that pydantic's location means, and what is left of it.
+
+    Pydantic names the kind of a node before its keys. For leaves no such level exists in the
+    file, and `children` is not written where a list stands for it.
+    """
+    path: YamlPath = ()
+    is_kind = False
+    for i, step in enumerate(location):
+        here = value_at(data, path)
+        if is_kind and step in LEAVES:
+            is_kind = False
+            continue
+        if isinstance(here, list) and step == "children":
+            continue
+        exists = step in here if isinstance(here, dict) else isinstance(step, int)
+        if not exists:
+            return path, location[i:]
+        is_kind = _before_node(location, i)
+        path = (*path, step)
+    return path, ()
+
+
+def _before_node(location: tuple[int | str, ...], i: int) -> bool:
+    """Return whether the step at `i` leads to a node, so that the next one is its kind."""
+    if location[i] == "root":
+        return i == 0
+    if location[i] == "child":
+        return location[i - 1] in BLOCKS
+    return isinstance(location[i], int) and location[i - 1] == "children"
+
+
+def _known_keys(document: type[Document], location: tuple[int | str, ...]) -> list[str]:
+    """Return the keys that the mapping at a location may have."""
+    model: type[Model] = document
+    for i, step in enumerate(location[:-1]):
+        if i and _before_node(location, i - 1):
+            model = {**LEAVES, **BLOCKS}[str(step)]
+        elif i == 0 and step in ("in", "out"):
+            model = InPort if step == "in" else OutPort
+    return [field.alias or name for name, field in model.model_fields.items()]
