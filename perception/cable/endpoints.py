@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from perception.cable.graph import Edge, SkeletonGraph
+from perception.cable.graph import Edge, SkeletonGraph, usual_radius
 from perception.cable.mask import CableMask
 from perception.cable.tracers.centre_line import arc_lengths
 from perception.cable.types import Endpoint, Points
@@ -40,7 +40,7 @@ def find_endpoints(
     """Return the ends of cables, the surest first."""
     config = config or EndpointConfig()
     found = []
-    radius_px = float(np.median(np.concatenate([edge.radius_px for edge in graph.edges])))
+    radius_px = usual_radius(graph)
     for node, arms in enumerate(graph.arms):
         if len(arms) == 1 and not leaves_view(mask, graph.nodes_px[node], config.border_px):
             edge, end = graph.edges[arms[0][0]], arms[0][1]

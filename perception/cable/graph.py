@@ -1,6 +1,7 @@
 """The skeleton of a mask as a graph: edges are pieces of centre line, nodes where they meet."""
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +13,9 @@ from perception.cable.types import Points
 Pixel = tuple[int, int]
 # One of the two ends of an edge: its number, and 0 for the first point or 1 for the last.
 Arm = tuple[int, int]
+# A dead end is a spur up to this many radii of the mask, and widths of the cable, of length.
+SPUR_RADII = 1.0
+SPUR_WIDTHS = 0.9
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -37,6 +41,10 @@ class Edge:
         """Return the points starting at one end."""
         return self.points_px if end == 0 else self.points_px[::-1]
 
+    def reversed(self) -> "Edge":
+        """Return the same edge the other way round."""
+        return Edge(self.points_px[::-1], self.radius_px[::-1], (self.nodes[1], self.nodes[0]))
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SkeletonGraph:
@@ -54,7 +62,22 @@ class SkeletonGraph:
 
 
 def build_graph(mask: CableMask) -> SkeletonGraph:
-    """Return the graph of the mask's skeleton; closed rings without a node are left out."""
+    """Return the graph of the mask's skeleton; closed rings without a node are left out.
+
+    Short dead ends, which a skeleton has at every corner of the mask, are cut off.
+    """
+    edges, middles = _raw_edges(mask)
+    edges = _without_spurs(edges, mask.width_px)
+    edges = _joined(edges)
+    numbers = sorted({node for edge in edges for node in edge.nodes})
+    new = {node: k for k, node in enumerate(numbers)}
+    edges = [replace(edge, nodes=(new[edge.nodes[0]], new[edge.nodes[1]])) for edge in edges]
+    nodes_px = np.array([middles[node] for node in numbers]).reshape(-1, 2)
+    return SkeletonGraph(tuple(edges), nodes_px, tuple(map(tuple, _arms(edges, len(numbers)))))
+
+
+def _raw_edges(mask: CableMask) -> tuple[list[Edge], list[tuple[float, float]]]:
+    """Return the edges of the skeleton as it is, and the middles of its nodes."""
     pixels = [(int(y), int(x)) for y, x in np.argwhere(thin(mask.cable))]
     around = _neighbours(pixels)
     node_of, middles = _nodes(pixels, around)
@@ -66,11 +89,64 @@ def build_graph(mask: CableMask) -> SkeletonGraph:
         # An edge starts in the middle of its node, so that short edges keep their direction.
         points_px[0], points_px[-1] = middles[ends[0]], middles[ends[1]]
         edges.append(Edge(points_px, radius_px, ends))
-    arms: list[list[Arm]] = [[] for _ in middles]
+    return edges, middles
+
+
+def _arms(edges: Sequence[Edge], count: int) -> list[list[Arm]]:
+    arms: list[list[Arm]] = [[] for _ in range(count)]
     for number, edge in enumerate(edges):
         arms[edge.nodes[0]].append((number, 0))
         arms[edge.nodes[1]].append((number, 1))
-    return SkeletonGraph(tuple(edges), np.array(middles), tuple(tuple(arm) for arm in arms))
+    return arms
+
+
+def _without_spurs(edges: list[Edge], width_px: float) -> list[Edge]:
+    """Drop dead ends that are no longer than the mask is wide where they branch off."""
+    count = max((node for edge in edges for node in edge.nodes), default=-1) + 1
+    degree = [len(arms) for arms in _arms(edges, count)]
+    kept = []
+    for edge in edges:
+        degrees = [degree[node] for node in edge.nodes]
+        inner_radius_px = float(edge.radius_px[int(degrees[0] == 1) * -1])
+        longest_px = SPUR_RADII * inner_radius_px + SPUR_WIDTHS * width_px
+        if sorted(min(d, 2) for d in degrees) != [1, 2] or edge.length_px > longest_px:
+            kept.append(edge)
+    return kept
+
+
+def _joined(edges: list[Edge]) -> list[Edge]:
+    """Join pairs of edges that meet where nothing else does."""
+    count = max((node for edge in edges for node in edge.nodes), default=-1) + 1
+    alive = dict(enumerate(edges))
+    at: list[set[int]] = [set() for _ in range(count)]
+    loops: set[int] = set()
+    for number, edge in alive.items():
+        at[edge.nodes[0]].add(number)
+        at[edge.nodes[1]].add(number)
+        if edge.nodes[0] == edge.nodes[1]:
+            loops.add(edge.nodes[0])
+    for node in range(count):
+        if len(at[node]) != 2 or node in loops:
+            continue
+        a, b = sorted(at[node])
+        joined = _join(alive.pop(a), alive.pop(b), node)
+        for end in joined.nodes:
+            at[end] = (at[end] - {a, b}) | {a}
+        if joined.nodes[0] == joined.nodes[1]:
+            loops.add(joined.nodes[0])
+        alive[a] = joined
+    return list(alive.values())
+
+
+def _join(a: Edge, b: Edge, node: int) -> Edge:
+    """Return the edge that runs along `a` to a node and on along `b`."""
+    a = a if a.nodes[1] == node else a.reversed()
+    b = b if b.nodes[0] == node else b.reversed()
+    return Edge(
+        np.concatenate([a.points_px, b.points_px[1:]]),
+        np.concatenate([a.radius_px, b.radius_px[1:]]),
+        (a.nodes[0], b.nodes[1]),
+    )
 
 
 def _neighbours(pixels: list[Pixel]) -> dict[Pixel, list[Pixel]]:
@@ -119,3 +195,8 @@ def _chains(around: dict[Pixel, list[Pixel]], node_of: dict[Pixel, int]) -> list
             walked.add((chain[-1], chain[-2]))
             chains.append(chain)
     return chains
+
+
+def usual_radius(graph: SkeletonGraph) -> float:
+    """Return the radius of a single strand: the median along all edges."""
+    return float(np.median(np.concatenate([edge.radius_px for edge in graph.edges])))

@@ -77,7 +77,7 @@ def find_mask(image: GreyImage, config: MaskConfig | None = None) -> CableMask |
     low = max(config.noise_factor * noise, config.low_contrast * contrast)
     high = max(config.noise_factor * noise, config.high_contrast * contrast)
     cable = _hysteresis(rise, low, high) & ~clutter
-    radius_px = _radius(cable)
+    radius_px = radii(cable)
     return _keep_cable(CableMask(cable, clutter, radius_px, 0.0, contrast, noise), config)
 
 
@@ -129,7 +129,8 @@ def _hysteresis(rise: Floats32, low: float, high: float) -> Bools:
     return pieces
 
 
-def _radius(cable: Bools) -> Floats32:
+def radii(cable: Bools) -> Floats32:
+    """Return the distance of each cable pixel to the nearest pixel that is none."""
     return _floats(cv2.distanceTransform(cable.astype(np.uint8), cv2.DIST_L2, 3))
 
 

@@ -5,6 +5,7 @@ from functools import lru_cache
 
 import numpy as np
 
+from perception.cable.gaps import close_gaps
 from perception.cable.graph import SkeletonGraph, build_graph
 from perception.cable.mask import CableMask, MaskConfig, find_mask
 from perception.camera import GreyImage
@@ -39,4 +40,6 @@ def _observe(pixels: bytes, shape: tuple[int, int], config: MaskConfig) -> Obser
     if mask is None:
         return None
     graph = build_graph(mask)
+    if graph.edges and (closed := close_gaps(mask, graph)) is not None:
+        mask, graph = closed, build_graph(closed)
     return Observation(mask, graph) if graph.edges else None

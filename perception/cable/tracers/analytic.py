@@ -206,9 +206,7 @@ class _Search:
         if len(old) < 2:
             return np.zeros(len(points_px), dtype=bool)
         gaps = np.linalg.norm(points_px[:, None] - old[None], axis=2)
-        near: np.ndarray[tuple[int], np.dtype[np.bool_]] = (
-            gaps.min(axis=1) < self.config.visited_px
-        )
+        near: np.ndarray[tuple[int], np.dtype[np.bool_]] = gaps.min(axis=1) < self.config.visited_px
         return near
 
     def _end(self, path: _Path, start: _Path) -> TraceEnd | None:

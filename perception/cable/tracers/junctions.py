@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import networkx as nx
 import numpy as np
 
-from perception.cable.graph import Arm, Edge, SkeletonGraph
+from perception.cable.graph import Arm, Edge, SkeletonGraph, usual_radius
 from perception.cable.types import Points
 
 
@@ -23,25 +23,27 @@ class JunctionConfig:
     """Settings of how strands may go on; lengths in cable widths, costs in nats.
 
     Attributes:
-        spur_widths: A dead end shorter than this is no strand.
         bridge_widths: Longest bridge of single width.
         thick_bridge_widths: Longest bridge that is as thick as two strands.
         thick_ratio: From here on an edge is thick, as a multiple of the usual radius.
         near_widths: Where on an arm its direction is measured from.
         far_widths: And to where.
-        bend_rad: Standard deviation of a strand's turn within a junction.
+        bend_cost: Cost of bending energy, the integral of curvature squared, times width.
+        free_curvature: Curvature times width that costs nothing more.
+        sharp_cost: Cost of the square of what goes beyond it.
         loose_cost: Cost of a strand that ends at a junction.
         hairpin_cost: Cost of a strand that turns back where two strands merge.
         most_arms: Nodes with more arms are paired greedily.
     """
 
-    spur_widths: float = 1.5
     bridge_widths: float = 3.5
     thick_bridge_widths: float = 12.0
     thick_ratio: float = 1.25
     near_widths: float = 0.8
     far_widths: float = 3.2
-    bend_rad: float = 0.35
+    bend_cost: float = 3.0
+    free_curvature: float = 0.5
+    sharp_cost: float = 12.0
     loose_cost: float = 7.0
     hairpin_cost: float = 2.0
     most_arms: int = 8
@@ -84,17 +86,10 @@ class Junctions:
     Attributes:
         all: The junctions.
         bridges: Edges that two strands run over.
-        spurs: Edges that are no strand.
     """
 
     all: tuple[Junction, ...]
     bridges: frozenset[int]
-    spurs: frozenset[int]
-
-
-def usual_radius(graph: SkeletonGraph) -> float:
-    """Return the radius of a single strand: the median along all edges."""
-    return float(np.median(np.concatenate([edge.radius_px for edge in graph.edges])))
 
 
 def find_junctions(
@@ -107,32 +102,18 @@ def find_junctions(
         number: float(np.median(edge.radius_px)) > config.thick_ratio * radius_px
         for number, edge in enumerate(graph.edges)
     }
-    spurs = _spurs(graph, config.spur_widths * width_px)
-    bridges = _bridges(graph, spurs, thick, width_px, config)
+    bridges = _bridges(graph, thick, width_px, config)
     maker = _OptionMaker(graph, thick, width_px, config)
     junctions = []
     for nodes in _groups(graph, bridges):
-        arms = tuple(
-            arm for node in nodes for arm in graph.arms[node] if arm[0] not in bridges | spurs
-        )
+        arms = tuple(arm for node in nodes for arm in graph.arms[node] if arm[0] not in bridges)
         if arms:
             junctions.append(Junction(nodes, arms, maker.options(arms)))
-    return Junctions(tuple(junctions), bridges, spurs)
-
-
-def _spurs(graph: SkeletonGraph, longest_px: float) -> frozenset[int]:
-    """Return short dead ends that hang on a fork."""
-    return frozenset(
-        number
-        for number, edge in enumerate(graph.edges)
-        if edge.length_px < longest_px
-        and sorted(min(len(graph.arms[node]), 2) for node in edge.nodes) == [1, 2]
-    )
+    return Junctions(tuple(junctions), bridges)
 
 
 def _bridges(
     graph: SkeletonGraph,
-    spurs: frozenset[int],
     thick: dict[int, bool],
     width_px: float,
     config: JunctionConfig,
@@ -147,11 +128,7 @@ def _bridges(
         known = roads.get_edge_data(a, b, {"weight": math.inf})
         if inner and share < min(1.0, known["weight"]):
             roads.add_edge(a, b, weight=share, number=number)
-    odd = [
-        node
-        for node, arms in enumerate(graph.arms)
-        if node in roads and sum(arm[0] not in spurs for arm in arms) % 2
-    ]
+    odd = [node for node, arms in enumerate(graph.arms) if node in roads and len(arms) % 2]
     return _postman(roads, odd)
 
 
@@ -191,8 +168,8 @@ def arm_ray(edge: Edge, end: int, near_px: float, far_px: float) -> tuple[Points
 
 
 def turn_rad(a: Points, b: Points) -> float:
-    """Return the angle between two directions, in [0, pi]."""
-    return abs(math.atan2(a[0] * b[1] - a[1] * b[0], float(a @ b)))
+    """Return the angle from one direction to another, in [-pi, pi]."""
+    return math.atan2(a[0] * b[1] - a[1] * b[0], float(a @ b))
 
 
 class _OptionMaker:
@@ -237,10 +214,25 @@ class _OptionMaker:
     def _bend_cost(
         self, a: tuple[Points, Points], b: tuple[Points, Points], hairpin: bool
     ) -> float:
+        """Return the cost of a strand that comes in along one arm and goes on along another.
+
+        A cubic with end slopes p and q to its chord of length L has the bending energy
+        4 (p^2 - p q + q^2) / L and the end curvatures 2 (2 p - q) / L and 2 (2 q - p) / L.
+        """
         chord = b[0] - a[0]
-        first, second = turn_rad(-a[1], chord), turn_rad(chord, b[1])
-        bend = (first**2 + second**2) / (2.0 * self.config.bend_rad**2)
-        return min(bend, self.config.hairpin_cost) if hairpin else bend
+        p, q = turn_rad(-a[1], chord), turn_rad(chord, b[1])
+        length_px = max(float(np.linalg.norm(chord)), self.width_px) * _arc_over_chord(p, q)
+        energy = 4.0 * (p * p - p * q + q * q) / length_px * self.width_px
+        sharpest = 2.0 * max(abs(2.0 * p - q), abs(2.0 * q - p)) / length_px * self.width_px
+        beyond = max(sharpest - self.config.free_curvature, 0.0)
+        cost = self.config.bend_cost * energy + self.config.sharp_cost * beyond**2
+        return min(cost, self.config.hairpin_cost) if hairpin else cost
+
+
+def _arc_over_chord(p: float, q: float) -> float:
+    """Return how much longer than its chord an arc with these end slopes is."""
+    half = min(0.5 * abs(p + q), 2.0)
+    return half / math.sin(half) if half > 1e-3 else 1.0
 
 
 def _pairings(
