@@ -2,13 +2,10 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from executive.core.outcome import Reason
+from executive.engine.builder import NodeInfo
 from executive.engine.ticks import NodeStatus
-
-if TYPE_CHECKING:
-    from executive.engine.builder import NodeInfo
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,7 +28,7 @@ class Cause:
 
 
 def deciding_leaves(
-    nodes: "Sequence[NodeInfo]",
+    nodes: Sequence[NodeInfo],
     answers: Mapping[int, NodeStatus],
     reasons: Mapping[int, Reason],
 ) -> tuple[Cause, ...]:

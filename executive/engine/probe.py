@@ -7,18 +7,18 @@ were visited: a node that another one halts is never visited (trap e16).
 import time
 import traceback
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status as TreeStatus
 
 from executive.core.errors import NodeError
 from executive.core.outcome import Outcome, Reason
+from executive.engine.builder import BuiltTree
 from executive.engine.ticks import (
     RUNNER,
     Halt,
-    LeafOutcome,
     NodeFault,
+    NodeOutcome,
     NodeStatus,
     Tick,
 )
@@ -27,14 +27,11 @@ from executive.engine.ticks import (
 _NO_ANSWER = "update() gave no status; expected Status.RUNNING, SUCCESS or FAILURE"
 _STATUS = {status: NodeStatus(status.value) for status in TreeStatus}
 
-if TYPE_CHECKING:
-    from executive.engine.builder import BuiltTree
-
 
 class TreeProbe:
     """Watches one tree from its first tick to its last."""
 
-    def __init__(self, tree: "BuiltTree") -> None:
+    def __init__(self, tree: BuiltTree) -> None:
         """Begin with what the nodes are before the first tick."""
         self._tree = tree
         self.behaviours: tuple[Behaviour, ...] = tuple(node.behaviour for node in tree.nodes)
@@ -63,7 +60,8 @@ class TreeProbe:
             What it changed, and the error when a node raised.
         """
         began_s = time.perf_counter()
-        self._answers, outcomes, error = {}, [], None
+        self._answers, error = {}, None
+        outcomes: list[NodeOutcome] = []
         try:
             for behaviour in self._tree.root.tick():
                 node, status = self._index.get(id(behaviour)), behaviour.status
@@ -71,8 +69,8 @@ class TreeProbe:
                     error = self.error_of(behaviour, number, TypeError(_NO_ANSWER))
                 if node is not None:
                     self._answers[node] = status
-                    if status is not TreeStatus.RUNNING and not behaviour.children:
-                        outcomes.append(self._outcome(node, behaviour))
+                    if status is not TreeStatus.RUNNING:
+                        outcomes += self._outcome(node, behaviour)
         except BaseException as cause:
             raising = self._remember_raising(cause)
             if not isinstance(cause, Exception):
@@ -92,7 +90,7 @@ class TreeProbe:
         number: int,
         time_s: float,
         duration_s: float,
-        outcomes: Sequence[LeafOutcome],
+        outcomes: Sequence[NodeOutcome],
         faults: tuple[NodeFault, ...],
     ) -> Tick:
         before, after = self._before, [behaviour.status for behaviour in self.behaviours]
@@ -128,17 +126,20 @@ class TreeProbe:
             parent = self._parents[parent]
         return RUNNER if parent is None else parent
 
-    def _outcome(self, node: int, behaviour: Behaviour) -> LeafOutcome:
+    def _outcome(self, node: int, behaviour: Behaviour) -> list[NodeOutcome]:
+        """Return how a node ended, if it decided that itself."""
         outcome = getattr(behaviour, "outcome", None)
         reason = outcome.reason if isinstance(outcome, Outcome) else None
+        if behaviour.children and reason is None and node not in self.reasons:
+            return []
         if reason is None:
             self.reasons.pop(node, None)
         else:
             self.reasons[node] = reason
-        return LeafOutcome(node, _STATUS[behaviour.status], reason)
+        return [NodeOutcome(node, _STATUS[behaviour.status], reason)]
 
-    def _is_news(self, number: int, outcome: LeafOutcome) -> bool:
-        """Return whether the leaf did not end the same way in the tick before.
+    def _is_news(self, number: int, outcome: NodeOutcome) -> bool:
+        """Return whether the node did not end the same way in the tick before.
 
         Conditions of a reactive branch answer the same in every tick; only their first
         answer is worth a record, the visits tell the rest.

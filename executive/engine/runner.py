@@ -8,21 +8,18 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
-from typing import TYPE_CHECKING
 
 from py_trees.behaviour import Behaviour
 
 from executive.core.errors import NodeError
 from executive.core.world import Cell
+from executive.engine.builder import BuiltTree
 from executive.engine.causes import Cause, deciding_leaves
 from executive.engine.control import EmergencyStopped, RunControl
 from executive.engine.probe import TreeProbe
 from executive.engine.rate import Rate, RateReport
 from executive.engine.stopping import each_guarded, stop_running
 from executive.engine.ticks import NodeStatus, RunObserver
-
-if TYPE_CHECKING:
-    from executive.engine.builder import BuiltTree
 
 
 class MissionOutcome(StrEnum):
@@ -89,7 +86,7 @@ class Runner:
 
     def __init__(
         self,
-        tree: "BuiltTree",
+        tree: BuiltTree,
         cell: Cell,
         *,
         tick_hz: float,

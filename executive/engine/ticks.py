@@ -40,11 +40,11 @@ class Halt:
 
 
 @dataclass(frozen=True, slots=True)
-class LeafOutcome:
-    """A leaf finished.
+class NodeOutcome:
+    """A leaf finished, or a decorator answered without asking its child.
 
     Attributes:
-        node: Index of the leaf.
+        node: Index of the node.
         status: SUCCESS or FAILURE.
         reason: Why it failed, if it said so.
     """
@@ -83,7 +83,7 @@ class Tick:
         visited: Indices of the nodes that were ticked, in the order in which they answered.
         changes: Index and new status of every node whose status is not what it was.
         halts: Running nodes that were stopped.
-        outcomes: Leaves that finished.
+        outcomes: Leaves that finished, and decorators that answered by themselves.
         writes: Blackboard writes, in order; in a recording, values are in their JSON form.
         faults: Exceptions.
     """
@@ -94,7 +94,7 @@ class Tick:
     visited: tuple[int, ...] = ()
     changes: tuple[tuple[int, NodeStatus], ...] = ()
     halts: tuple[Halt, ...] = ()
-    outcomes: tuple[LeafOutcome, ...] = ()
+    outcomes: tuple[NodeOutcome, ...] = ()
     writes: tuple[Write, ...] = ()
     faults: tuple[NodeFault, ...] = ()
 

@@ -5,7 +5,7 @@ from typing import Literal
 
 from executive.core.world import StreamMessage
 from executive.engine.recording.messages import ActionReport, RecordedNode
-from executive.engine.ticks import RUNNER, LeafOutcome, NodeStatus, Tick
+from executive.engine.ticks import RUNNER, NodeOutcome, NodeStatus, Tick
 
 _FINISHED = (NodeStatus.SUCCESS, NodeStatus.FAILURE)
 
@@ -18,7 +18,7 @@ class ActionLog:
         self._nodes = nodes
         self._acting = frozenset(index for index, node in enumerate(nodes) if node.acts)
         self._statuses: dict[int, NodeStatus] = {}
-        self._outcomes: dict[int, LeafOutcome] = {}
+        self._outcomes: dict[int, NodeOutcome] = {}
         self._began_s: dict[int, float] = {}
         self._reports: list[ActionReport] = []
         self._now_s = 0.0
@@ -27,6 +27,11 @@ class ActionLog:
     def current(self) -> tuple[str, ...]:
         """Names of the actions that are under way."""
         return tuple(self._nodes[node].name for node in self._began_s)
+
+    @property
+    def ended(self) -> tuple[ActionReport, ...]:
+        """Activations that have ended, in that order."""
+        return tuple(self._reports)
 
     def on_tick(self, tick: Tick) -> None:
         """Take what one tick says about actions."""
@@ -53,7 +58,7 @@ class ActionLog:
         running = (self._report(node, "running", "") for node in self._began_s)
         return (*self._reports, *running)
 
-    def _end_as(self, outcome: LeafOutcome) -> None:
+    def _end_as(self, outcome: NodeOutcome) -> None:
         failed = outcome.status is NodeStatus.FAILURE
         reason = "" if outcome.reason is None else str(outcome.reason)
         self._end(outcome.node, "failure" if failed else "success", reason)

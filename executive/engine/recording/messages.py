@@ -10,7 +10,7 @@ from pydantic import BaseModel, ConfigDict, Field, JsonValue
 
 from executive.engine.blackboard import Write
 from executive.engine.rate import RateReport
-from executive.engine.ticks import Halt, LeafOutcome, NodeFault, NodeStatus
+from executive.engine.ticks import Halt, NodeFault, NodeOutcome, NodeStatus
 
 KEYFRAME_EVERY = 256
 
@@ -84,7 +84,7 @@ class TickMessage(_Message):
     visited: tuple[int, ...] | None = None
     changes: tuple[tuple[int, NodeStatus], ...] = ()
     halts: tuple[Halt, ...] = ()
-    outcomes: tuple[LeafOutcome, ...] = ()
+    outcomes: tuple[NodeOutcome, ...] = ()
     writes: tuple[Write, ...] = ()
     faults: tuple[NodeFault, ...] = ()
     keyframe: Keyframe | None = None

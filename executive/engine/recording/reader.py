@@ -27,7 +27,7 @@ from executive.engine.recording.messages import (
     ResultMessage,
     TickMessage,
 )
-from executive.engine.ticks import LeafOutcome, NodeStatus, Tick
+from executive.engine.ticks import NodeOutcome, NodeStatus, Tick
 
 _OWN_TOPICS = (MISSION_TOPIC, TICKS_TOPIC, RESULT_TOPIC)
 _BROKEN = (McapError, ZstdError, struct.error, EOFError)
@@ -158,7 +158,7 @@ class Recording:
             written.update((write.key, message.tick) for write in message.writes)
         return {key: self._key_state(key, tick) for key, tick in sorted(written.items())}
 
-    def outcomes(self, number: int) -> dict[int, LeafOutcome]:
+    def outcomes(self, number: int) -> dict[int, NodeOutcome]:
         """Return how each leaf ended last, up to a tick, by index."""
         ended: dict[int, int] = {}
         for message in self._from_keyframe(number):
@@ -193,7 +193,7 @@ class Recording:
         write = next(w for w in reversed(self._message(tick).writes) if w.key == key)
         return KeyState(write.value, write.writer, tick)
 
-    def _outcome(self, node: int, tick: int) -> LeafOutcome:
+    def _outcome(self, node: int, tick: int) -> NodeOutcome:
         return next(end for end in self._message(tick).outcomes if end.node == node)
 
     def _message(self, number: int) -> TickMessage:

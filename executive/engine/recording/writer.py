@@ -38,7 +38,7 @@ from executive.engine.recording.messages import (
     TickMessage,
 )
 from executive.engine.recording.values import ValueEncoder, array_hash
-from executive.engine.ticks import LeafOutcome, NodeStatus, Tick
+from executive.engine.ticks import NodeOutcome, NodeStatus, Tick
 
 FLUSH_S = 0.5
 CHUNK_BYTES = 256 * 1024
@@ -141,7 +141,7 @@ class RecordingWriter:
             keyframe=keyframe,
         )
 
-    def _encoded_outcome(self, outcome: LeafOutcome) -> LeafOutcome:
+    def _encoded_outcome(self, outcome: NodeOutcome) -> NodeOutcome:
         reason = outcome.reason
         if reason is None:
             return outcome

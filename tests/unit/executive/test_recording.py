@@ -14,72 +14,19 @@ import pytest
 from mcap.reader import make_reader
 from PIL import Image
 from py_trees.common import Status
-from py_trees.composites import Selector, Sequence
 from py_trees.decorators import Retry
-from toy_runs import Leaf, Ticks, ToyCell, built, header_of
+from toy_runs import Leaf, built, busy_tree, header_of, record
 
 from executive.core.errors import RecordingError
 from executive.core.outcome import failure
 from executive.engine.blackboard import Blackboard
-from executive.engine.recording.actions import ActionLog
 from executive.engine.recording.fingerprint import status_fingerprint
-from executive.engine.recording.messages import ResultMessage, RunReport
 from executive.engine.recording.reader import Recording
 from executive.engine.recording.values import ValueEncoder
 from executive.engine.recording.writer import RecordingWriter
-from executive.engine.runner import Runner
 from executive.engine.ticks import NodeStatus
 
 RUNNING, SUCCESS, FAILURE = Status.RUNNING, Status.SUCCESS, Status.FAILURE
-
-
-def record(path, root, blackboard=None, acting=(), seed=0, timeout_s=None, result=True):
-    """Run a hand-made tree with a recorder; return the recording and the live ticks."""
-    tree, seen = built(root, blackboard, acting), Ticks()
-    header = header_of(tree, seed=seed)
-    with RecordingWriter(path, header) as writer:
-        actions = ActionLog(header.nodes)
-        observers = (writer, seen, actions)
-        run = Runner(tree, ToyCell(), tick_hz=10.0, timeout_s=timeout_s, observers=observers).run()
-        if result:
-            report = RunReport(
-                mission="toy",
-                seed=seed,
-                outcome=run.outcome.value,
-                reason=run.reason,
-                claim=None,
-                sim_s=run.sim_s,
-                wall_s=run.wall_s,
-                ticks=run.ticks,
-                actions=actions.reports(),
-                recording=str(path),
-            )
-            writer.write_result(ResultMessage(report=report, rate=run.rate))
-    return Recording.open(path), seen.ticks
-
-
-def busy_tree(blackboard=None, seed=0):
-    """Return a tree that switches branches, fails, halts and writes for 600 ticks."""
-    rng = np.random.default_rng(seed)
-    counter = [0]
-
-    def guard():
-        counter[0] += 1
-        if blackboard is not None and counter[0] % 7 == 0:
-            blackboard.write("toy:count", counter[0], "mission/guard")
-        return failure("guard.open", f"door {counter[0] % 5}") if rng.random() < 0.9 else SUCCESS
-
-    def work():
-        return FAILURE if counter[0] >= 600 else RUNNING
-
-    return Selector(
-        "mission",
-        memory=False,
-        children=[
-            Sequence("wait", memory=False, children=[Leaf("guard", guard), Leaf("hold", RUNNING)]),
-            Leaf("work", work),
-        ],
-    )
 
 
 def test_statuses_at_any_tick_are_those_of_the_tree(tmp_path):

@@ -4,14 +4,27 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from types import SimpleNamespace
 
+import numpy as np
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
+from py_trees.composites import Selector, Sequence
 
 from executive.core.clock import ManualClock
-from executive.core.outcome import Outcome
+from executive.core.outcome import Outcome, failure
 from executive.core.world import StreamMessage
 from executive.engine.blackboard import Blackboard
-from executive.engine.recording.messages import MissionHeader, RecordedNode
+from executive.engine.recording.actions import ActionLog
+from executive.engine.recording.messages import (
+    MissionHeader,
+    RecordedNode,
+    ResultMessage,
+    RunReport,
+)
+from executive.engine.recording.reader import Recording
+from executive.engine.recording.writer import RecordingWriter
+from executive.engine.runner import Runner
+
+RUNNING, SUCCESS, FAILURE = Status.RUNNING, Status.SUCCESS, Status.FAILURE
 
 
 class Leaf(Behaviour):
@@ -136,3 +149,52 @@ class Ticks:
 
     def on_streams(self, messages):
         self.messages.extend(messages)
+
+
+def record(path, root, blackboard=None, acting=(), seed=0, timeout_s=None, result=True):
+    """Run a hand-made tree with a recorder; return the recording and the live ticks."""
+    tree, seen = built(root, blackboard, acting), Ticks()
+    header = header_of(tree, seed=seed)
+    with RecordingWriter(path, header) as writer:
+        actions = ActionLog(header.nodes)
+        observers = (writer, seen, actions)
+        run = Runner(tree, ToyCell(), tick_hz=10.0, timeout_s=timeout_s, observers=observers).run()
+        if result:
+            report = RunReport(
+                mission="toy",
+                seed=seed,
+                outcome=run.outcome.value,
+                reason=run.reason,
+                claim=None,
+                sim_s=run.sim_s,
+                wall_s=run.wall_s,
+                ticks=run.ticks,
+                actions=actions.reports(),
+                recording=str(path),
+            )
+            writer.write_result(ResultMessage(report=report, rate=run.rate))
+    return Recording.open(path), seen.ticks
+
+
+def busy_tree(blackboard=None, seed=0):
+    """Return a tree that switches branches, fails, halts and writes for 600 ticks."""
+    rng = np.random.default_rng(seed)
+    counter = [0]
+
+    def guard():
+        counter[0] += 1
+        if blackboard is not None and counter[0] % 7 == 0:
+            blackboard.write("toy:count", counter[0], "mission/guard")
+        return failure("guard.open", f"door {counter[0] % 5}") if rng.random() < 0.9 else SUCCESS
+
+    def work():
+        return FAILURE if counter[0] >= 600 else RUNNING
+
+    return Selector(
+        "mission",
+        memory=False,
+        children=[
+            Sequence("wait", memory=False, children=[Leaf("guard", guard), Leaf("hold", RUNNING)]),
+            Leaf("work", work),
+        ],
+    )

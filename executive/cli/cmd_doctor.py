@@ -1,0 +1,42 @@
+"""`cellwright doctor`: whether this machine can run missions, and what to do if not."""
+
+import typer
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from executive.cli.console import chatter, stdout_kept_for_the_result
+from executive.cli.doctor_checks import CHECKS, WARNINGS, Check, CheckError
+
+
+def doctor() -> None:
+    """Try every library and the simulated cell; say what is broken, and how to mend it.
+
+    Exit codes: 0 when all is well, 3 when something is broken.
+    """
+    table = Table(box=None, show_header=False, padding=(0, 2, 0, 0))
+    broken = False
+    with stdout_kept_for_the_result():
+        for check in CHECKS:
+            with chatter().status(f"trying {check.name}"):
+                found, fine = _tried(check)
+            broken |= not fine and check.name not in WARNINGS
+            table.add_row(_mark(check, fine), check.name, found, "" if fine else check.fix)
+    Console(highlight=False).print(table)
+    if broken:
+        raise typer.Exit(3)
+
+
+def _tried(check: Check) -> tuple[str, bool]:
+    try:
+        return check.attempt(), True
+    except CheckError as error:
+        return str(error), False
+    except Exception as error:  # whatever is broken, the other checks are wanted too
+        return f"{type(error).__name__}: {error}", False
+
+
+def _mark(check: Check, fine: bool) -> Text:
+    if fine:
+        return Text("✓", "green")
+    return Text("!", "yellow") if check.name in WARNINGS else Text("✗", "bold red")

@@ -1,0 +1,154 @@
+"""`cellwright perceive`: what perception makes of images, without a cell or a mission."""
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import numpy as np
+import typer
+from pydantic import JsonValue
+from rich.console import Console
+from rich.table import Table
+
+from executive.cli.console import chatter, print_error, stdout_kept_for_the_result
+from executive.cli.images import read_grey, write_image
+from executive.core.errors import InputError
+
+if TYPE_CHECKING:
+    from perception.cable.types import CableScene, Points
+    from perception.camera import GreyImage
+
+perceive = typer.Typer(help="Run perception on image files.", no_args_is_help=True)
+
+
+@perceive.callback()
+def _kinds() -> None:
+    """Keep `cable` a command of its own while it is the only one."""
+
+
+@perceive.command()
+def cable(
+    images: Annotated[list[Path], typer.Argument(metavar="IMAGE...", help="Image files.")],
+    start: Annotated[
+        str | None,
+        typer.Option(metavar="X,Y", help="Where to start tracing [px]; found when left out."),
+    ] = None,
+    as_json: Annotated[
+        bool, typer.Option("--json", help="Print one line of JSON an image on stdout.")
+    ] = False,
+    out: Annotated[
+        Path | None,
+        typer.Option(metavar="PNG", dir_okay=False, help="Draw what is found; one image only."),
+    ] = None,
+) -> None:
+    """Trace the cable in overhead images: ends, crossings, knots, and where to hold them."""
+    from executive.app.compose import cable_vision
+
+    if out is not None and len(images) > 1:
+        raise InputError(f"--out {out}: got {len(images)} images; expected one, try one at a time")
+    start_px = None if start is None else _point(start)
+    with stdout_kept_for_the_result():
+        vision = cable_vision()
+    failed = False
+    for path in images:
+        try:
+            image = read_grey(path)
+            _check_inside(path, image, start_px)
+        except InputError as error:
+            # The other images are still worth an answer.
+            print_error(chatter(), str(error))
+            failed = True
+            continue
+        with stdout_kept_for_the_result():
+            scene = vision.scene(image, start_px)
+        _print_scene(path, scene, as_json)
+        if out is not None:
+            _draw(out, image, scene)
+    if failed:
+        raise typer.Exit(2)
+
+
+def _point(text: str) -> "Points":
+    try:
+        x, y = (float(part) for part in text.split(","))
+    except ValueError:
+        raise InputError(f"--start {text}: expected X,Y in pixels; try --start 310,245") from None
+    return np.array([[x, y]])
+
+
+def _check_inside(path: Path, image: "GreyImage", start_px: "Points | None") -> None:
+    if start_px is None:
+        return
+    height, width = image.shape
+    x, y = start_px[0]
+    if not (0 <= x < width and 0 <= y < height):
+        raise InputError(
+            f"{path}: --start {x:g},{y:g} lies outside; expected 0 to {width - 1} and "
+            f"0 to {height - 1} px"
+        )
+
+
+def _print_scene(path: Path, scene: "CableScene", as_json: bool) -> None:
+    if as_json:
+        typer.echo(json.dumps(scene_document(path, scene)))
+        return
+    table = Table(box=None, show_header=False, padding=(0, 2, 0, 0))
+    ends = ", ".join(f"{trace.end} ({trace.probability:.2f})" for trace in scene.traces)
+    table.add_row("traces", f"{len(scene.traces)}: {ends}" if ends else "none")
+    table.add_row("endpoints", str(len(scene.endpoints)))
+    table.add_row("crossings", str(len(scene.crossings)))
+    table.add_row("knots", str(len(scene.knots)))
+    table.add_row("P(knotted)", f"{scene.knotted_probability:.3f}")
+    table.add_row("took", f"{scene.seconds:.2f} s")
+    Console(highlight=False).print(f"[bold]{path}[/]", table)
+
+
+def _draw(out: Path, image: "GreyImage", scene: "CableScene") -> None:
+    from perception.cable.draw import draw_scene
+
+    write_image(out, draw_scene(image, scene))
+    chatter().print(f"drawn: {out}")
+
+
+def scene_document(path: Path, scene: "CableScene") -> JsonValue:
+    """Return the line of JSON for one image."""
+    return {
+        "image": str(path),
+        "traces": [
+            {
+                "points_px": _rounded(trace.points_px),
+                "end": trace.end.value,
+                "probability": float(trace.probability),
+            }
+            for trace in scene.traces
+        ],
+        "endpoints_px": [_rounded(endpoint.position_px) for endpoint in scene.endpoints],
+        "crossings": [
+            {
+                "position_px": _rounded(crossing.position_px),
+                "trace_over": int(crossing.trace_over),
+                "arc_over": float(crossing.arc_over),
+                "trace_under": int(crossing.trace_under),
+                "arc_under": float(crossing.arc_under),
+                "probability": float(crossing.probability),
+            }
+            for crossing in scene.crossings
+        ],
+        "knots": [
+            {
+                "interval": [float(position) for position in knot.interval],
+                "first_undercrossing_px": _rounded(knot.first_undercrossing_px),
+                "cage_px": _rounded(knot.cage_px),
+                "pinch_px": _rounded(knot.pinch_px),
+            }
+            for knot in scene.knots
+        ],
+        "knotted_probability": float(scene.knotted_probability),
+        "seconds": float(scene.seconds),
+    }
+
+
+def _rounded(points_px: "Points") -> JsonValue:
+    """Return image points to a hundredth of a pixel, which is finer than anything seen."""
+    rounded: JsonValue = np.round(np.asarray(points_px, float), 2).tolist()
+    return rounded

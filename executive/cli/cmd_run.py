@@ -1,0 +1,220 @@
+"""`cellwright run`: run a mission, record it, and say what it came to."""
+
+import traceback
+from contextlib import ExitStack, closing
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Literal, Protocol
+
+import typer
+from pydantic import JsonValue
+from rich.console import Console
+from rich.text import Text
+
+from executive.cli.console import (
+    RunDisplay,
+    chatter,
+    print_error,
+    stdout_kept_for_the_result,
+)
+from executive.cli.settings import apply_settings
+from executive.core.errors import CellwrightError, InputError
+from executive.engine.control import EmergencyStopped, RunControl, stopped_by_signals
+from executive.engine.loader import load_mission
+from executive.engine.recording.messages import RunReport
+from executive.engine.runner import MissionOutcome, one_line
+from executive.engine.ticks import RunObserver
+from executive.inspector.views import OUTCOME_STYLES
+
+_BAD_INPUT, _ERROR = 2, MissionOutcome.ERROR.exit_code
+
+
+@dataclass(frozen=True, slots=True)
+class _Request:
+    """What the user asked for."""
+
+    mission: str
+    seed: int
+    assignments: tuple[str, ...]
+    record: Path | None
+    timeout_s: float | None
+    view: bool
+    html: Path | None
+
+
+class _LiveView(RunObserver, Protocol):
+    """A view that shows the cell while it runs."""
+
+    @property
+    def url(self) -> str:
+        """Where to look."""
+        ...
+
+    def close(self) -> None:
+        """End the view."""
+        ...
+
+
+def run(
+    mission: Annotated[str, typer.Argument(help="Name of a mission, or its YAML file.")],
+    seed: Annotated[int, typer.Option(min=0, help="Seed of everything random.")] = 0,
+    assignments: Annotated[
+        list[str] | None,
+        typer.Option("--set", metavar="KEY=VALUE", help="Set an input or a part of the scenario."),
+    ] = None,
+    record: Annotated[
+        Path | None,
+        typer.Option(dir_okay=False, help="Recording; runs/TIME_MISSION_SEED.mcap by default."),
+    ] = None,
+    timeout: Annotated[
+        float | None, typer.Option(min=0.0, help="Limit on the cell's clock [s].")
+    ] = None,
+    view: Annotated[bool, typer.Option("--view", help="Show the cell live in a browser.")] = False,
+    html: Annotated[
+        Path | None,
+        typer.Option(dir_okay=False, help="Write a replay of the cell as one HTML file."),
+    ] = None,
+    as_json: Annotated[
+        bool, typer.Option("--json", help="Print one JSON document on stdout.")
+    ] = False,
+) -> None:
+    """Run a mission and record it.
+
+    Exit codes: 0 success, 1 mission failed, 2 bad input, 3 error, 4 stopped by the user.
+
+    Ctrl-C stops the mission in order; a second one stops the arms at once.
+    """
+    request = _Request(mission, seed, tuple(assignments or ()), record, timeout, view, html)
+    with stdout_kept_for_the_result():
+        report, exit_code = _reported(request, chatter())
+    if as_json:
+        typer.echo(report.model_dump_json(exclude={"truth"} if report.truth is None else None))
+    else:
+        _print_summary(report)
+    raise typer.Exit(exit_code)
+
+
+def _reported(request: _Request, console: Console) -> tuple[RunReport, int]:
+    """Run what is asked for; whatever goes wrong becomes a report and an exit code."""
+    control = RunControl()
+    try:
+        with stopped_by_signals(control):
+            report = _recorded_run(request, control, console)
+    except InputError as error:
+        print_error(console, str(error))
+        return _no_run(request, "error", str(error)), _BAD_INPUT
+    except (EmergencyStopped, KeyboardInterrupt):
+        reason = f"stopped by {control.stop_reason} before the first tick"
+        return _no_run(request, "aborted", reason), MissionOutcome.ABORTED.exit_code
+    except Exception as error:  # the last place that can say what happened
+        _print_unexpected(console, error)
+        return _no_run(request, "error", one_line(error)), _ERROR
+    written = _write_html(request, report, console)
+    return report, MissionOutcome(report.outcome).exit_code if written else _ERROR
+
+
+def _recorded_run(request: _Request, control: RunControl, console: Console) -> RunReport:
+    from executive.app.catalogue import port_types, skills
+
+    mission = load_mission(request.mission, skills=skills(), types=port_types())
+    settings = apply_settings(
+        request.assignments, tuple(mission.document.in_), mission.document.scenario
+    )
+    # Only now, with the input in order, is it worth loading simulators and planners.
+    from executive.app.compose import open_cell
+    from executive.engine.builder import build
+    from executive.engine.mission_run import (
+        RunPlan,
+        default_recording,
+        recorded_nodes,
+        run_mission,
+    )
+
+    plan = RunPlan(
+        mission=mission,
+        seed=request.seed,
+        inputs=settings.inputs,
+        scenario=settings.scenario,
+        timeout_s=mission.document.timeout_s if request.timeout_s is None else request.timeout_s,
+        recording=request.record or default_recording(mission.document.name, request.seed),
+    )
+    with ExitStack() as stack:
+        with control.interruptible(), console.status(f"opening {mission.document.cell}"):
+            cell = open_cell(mission.cell, settings.scenario, request.seed)
+        stack.enter_context(closing(cell))
+        tree = build(mission, devices=cell.devices, clock=cell.clock, inputs=settings.inputs)
+        live = [stack.enter_context(closing(_live_view(console)))] if request.view else []
+        with RunDisplay(console, recorded_nodes(tree.nodes)) as display:
+            return run_mission(plan, tree, cell, control, (display, *live))
+
+
+def _live_view(console: Console) -> _LiveView:
+    from executive.app.views import open_live_view
+
+    view = open_live_view()
+    console.print(f"live view: {view.url}")
+    return view
+
+
+def _write_html(request: _Request, report: RunReport, console: Console) -> bool:
+    """Write the replay if it is asked for; return whether nothing went wrong."""
+    if request.html is None or report.recording is None:
+        return True
+    from executive.app.views import write_html
+
+    try:
+        write_html(Path(report.recording), request.html)
+    except CellwrightError as error:
+        print_error(console, str(error))
+        return False
+    console.print(f"replay: {request.html}")
+    return True
+
+
+def _no_run(request: _Request, outcome: Literal["aborted", "error"], reason: str) -> RunReport:
+    """Return the report of a mission that did not begin."""
+    return RunReport(
+        mission=request.mission,
+        seed=request.seed,
+        outcome=outcome,
+        reason=reason,
+        claim=None,
+        sim_s=0.0,
+        wall_s=0.0,
+        ticks=0,
+        actions=(),
+        recording=None,
+    )
+
+
+def _print_unexpected(console: Console, error: Exception) -> None:
+    """Print an error; one that is not ours is a bug, and its traceback tells where."""
+    print_error(console, one_line(error))
+    if not isinstance(error, CellwrightError):
+        console.print(Text("".join(traceback.format_exception(error)), "bright_black"))
+
+
+def _print_summary(report: RunReport) -> None:
+    took = (
+        f"{report.sim_s:.1f} s on the cell's clock, {report.wall_s:.1f} s here, "
+        f"{report.ticks} ticks, {len(report.actions)} actions"
+    )
+    lines = [
+        (report.mission, Text(report.outcome, OUTCOME_STYLES[report.outcome])),
+        ("because", Text(report.reason)),
+        ("claim", Text(_words(report.claim))),
+        ("truth", Text(_words(report.truth))),
+        ("took", Text(took)),
+        ("recorded", Text(report.recording or "")),
+        ("open it", Text(f"cellwright inspect {report.recording}" if report.recording else "")),
+    ]
+    console = Console(highlight=False)
+    for name, text in lines:
+        if text:
+            console.print(Text.assemble((f"{name:<10}", "bright_black"), text), soft_wrap=True)
+
+
+def _words(value: JsonValue) -> str:
+    if isinstance(value, dict):
+        return ", ".join(f"{name}: {item}" for name, item in value.items())
+    return "" if value is None else str(value)

@@ -1,0 +1,174 @@
+"""One recorded run of a mission on a cell: from the built tree to the report."""
+
+import dataclasses
+import platform
+import sys
+from collections.abc import Mapping, Sequence
+from datetime import UTC, datetime
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+
+import numpy as np
+from pydantic import JsonValue
+from pydantic_core import to_jsonable_python
+
+from executive.core.world import Cell
+from executive.engine.builder import BuiltTree, NodeInfo
+from executive.engine.control import RunControl
+from executive.engine.loader import Mission
+from executive.engine.recording.actions import ActionLog
+from executive.engine.recording.messages import (
+    MissionHeader,
+    RecordedNode,
+    ResultMessage,
+    RunReport,
+    SourceFile,
+)
+from executive.engine.recording.writer import RecordingWriter
+from executive.engine.runner import Runner
+from executive.engine.ticks import RunObserver
+
+CLAIM = "claim"
+"""Output of a mission that says what it believes to have reached."""
+
+# Everything whose version can change how a run goes.
+_PACKAGES = (
+    *("cellwright", "mcap", "numba", "numpy", "opencv-python-headless", "pin", "py_trees"),
+    *("pybullet", "pydantic", "ruckig", "scipy"),
+)
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class RunPlan:
+    """What is run, and with what.
+
+    Attributes:
+        mission: The mission.
+        seed: Seed of everything random.
+        inputs: Values of the mission's inputs.
+        scenario: What is set up in the cell.
+        timeout_s: Longest duration on the cell's clock [s]; None for no limit.
+        recording: Where the recording goes.
+    """
+
+    mission: Mission
+    seed: int
+    inputs: Mapping[str, object]
+    scenario: Mapping[str, object]
+    timeout_s: float | None
+    recording: Path
+
+
+def run_mission(
+    plan: RunPlan,
+    tree: BuiltTree,
+    cell: Cell,
+    control: RunControl,
+    observers: Sequence[RunObserver] = (),
+) -> RunReport:
+    """Run a mission to its end, record it, and score it where the cell knows the truth.
+
+    Args:
+        plan: What is run, and with what.
+        tree: The mission's tree, bound to the cell; it has not been ticked.
+        cell: The cell; it stays open.
+        control: How to pause and stop the run.
+        observers: Who else is told of every tick.
+
+    Raises:
+        RecordingError: The recording cannot be written.
+    """
+    header = mission_header(plan, tree.nodes)
+    with RecordingWriter(plan.recording, header) as writer:
+        actions = ActionLog(header.nodes)
+        runner = Runner(
+            tree,
+            cell,
+            tick_hz=header.tick_hz,
+            timeout_s=plan.timeout_s,
+            observers=(writer, actions, *observers),
+            control=control,
+        )
+        result = runner.run()
+        report = RunReport(
+            mission=header.mission,
+            seed=plan.seed,
+            outcome=result.outcome.value,
+            reason=result.reason,
+            claim=as_json(tree.outputs().get(CLAIM)),
+            truth=as_json(cell.truth()),
+            sim_s=result.sim_s,
+            wall_s=result.wall_s,
+            ticks=result.ticks,
+            actions=actions.reports(),
+            recording=str(plan.recording),
+        )
+        writer.write_result(ResultMessage(report=report, rate=result.rate))
+    return report
+
+
+def mission_header(plan: RunPlan, nodes: Sequence[NodeInfo]) -> MissionHeader:
+    """Return the first message of a recording."""
+    document = plan.mission.document
+    return MissionHeader(
+        format=1,
+        mission=document.name,
+        about=document.about,
+        seed=plan.seed,
+        tick_hz=document.tick_hz,
+        timeout_s=plan.timeout_s,
+        inputs={name: as_json(value) for name, value in plan.inputs.items()},
+        scenario={name: as_json(value) for name, value in plan.scenario.items()},
+        cell=plan.mission.cell.model_dump(mode="json"),
+        sources=tuple(
+            SourceFile(file=source.file, sha256=source.sha256, text=source.text)
+            for source in plan.mission.sources
+        ),
+        nodes=recorded_nodes(nodes),
+        versions=versions(),
+        started_utc=datetime.now(UTC).isoformat(timespec="seconds"),
+    )
+
+
+def default_recording(mission: str, seed: int) -> Path:
+    """Return a file in `runs/` that says when, what and with which seed."""
+    stamp = datetime.now(UTC).strftime("%Y%m%dT%H%M%SZ")
+    return Path("runs") / f"{stamp}_{mission}_{seed}.mcap"
+
+
+def versions() -> dict[str, str]:
+    """Return the versions of Python and of the packages that a run depends on."""
+    found = {"python": platform.python_version(), "platform": sys.platform}
+    for package in _PACKAGES:
+        try:
+            found[package] = version(package)
+        except PackageNotFoundError:  # e.g. a cell without a simulator
+            continue
+    return found
+
+
+def as_json(value: object) -> JsonValue:
+    """Return a value as plain JSON, without the types of its parts."""
+    plain: JsonValue = to_jsonable_python(value, fallback=_plain)
+    return plain
+
+
+def _plain(value: object) -> object:
+    return value.tolist() if isinstance(value, np.ndarray | np.generic) else str(value)
+
+
+def recorded_nodes(nodes: Sequence[NodeInfo]) -> tuple[RecordedNode, ...]:
+    """Return the node table as recordings hold it."""
+    return tuple(
+        RecordedNode(
+            path=node.path,
+            name=node.name,
+            kind=node.kind,
+            type=node.type,
+            parent=node.parent,
+            file=node.file,
+            line=node.line,
+            acts=node.acts,
+        )
+        for node in nodes
+    )
