@@ -5,6 +5,7 @@ import html
 import json
 import re
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 from importlib.resources import files
 from pathlib import Path
 
@@ -15,7 +16,15 @@ from executive.core.errors import RecordingError
 from robots.interfaces import Floats
 from robots.viewer.frame import SceneFrame, thinned
 from robots.viewer.shapes import TUBE_SIDES
-from robots.viewer.stage import CABLE_POINTS, TRACE_POINTS, TRACE_RADIUS_M, Stage, draw_trace
+from robots.viewer.stage import (
+    CABLE_POINTS,
+    TRACE_POINTS,
+    TRACE_RADIUS_M,
+    Stage,
+    draw_cable,
+    draw_camera,
+    draw_trace,
+)
 
 # Frames are stored as 16-bit integers: lengths in tenths of a millimetre (up to 3.2 m away),
 # quaternion parts in 1/32767.
@@ -83,16 +92,22 @@ def _paced(frames: Iterable[SceneFrame], interval_s: float) -> list[SceneFrame]:
 def _still(stage: Stage, frames: Sequence[SceneFrame]) -> dict[str, object]:
     """Return what does not change: the commands that build the scene, and sizes.
 
-    The cable and a trace are among them, as meshes that the player then bends.
+    The cable and a trace are among them, as meshes that the player then bends, and the camera
+    that looked first.
     """
     first = frames[0]
-    straight = SceneFrame(first.time_s, {}, first.cable_m, trace_m=first.cable_m)
-    commands = [*stage.commands(), stage.draw_cable(first), draw_trace(straight)]
+    cameras = [frame.camera for frame in frames if frame.camera is not None]
+    commands = [
+        *stage.commands(),
+        draw_cable(first),
+        draw_trace(replace(first, trace_m=first.cable_m)),
+        *(draw_camera(cameras[0]) if cameras else ()),
+    ]
     return {
         "commands": [_text(umsgpack.packb(command.lower())) for command in commands],
         "metre": METRE,
         "sides": TUBE_SIDES,
-        "cable_radius": stage.cable_radius_m,
+        "cable_radius": first.cable_radius_m,
         "trace_radius": TRACE_RADIUS_M,
     }
 

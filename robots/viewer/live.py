@@ -12,8 +12,8 @@ import zmq
 
 from executive.core.errors import DeviceError
 from robots.interfaces import Floats
-from robots.viewer.frame import SceneFrame
-from robots.viewer.stage import Stage, draw_trace, move_link
+from robots.viewer.frame import CameraCone, SceneFrame
+from robots.viewer.stage import Stage, draw_cable, draw_camera, draw_trace, move_link
 
 SERVER_COMMAND = (sys.executable, "-u", "-m", "meshcat.servers.zmqserver")
 _ANSWER_MS = 5_000
@@ -37,11 +37,11 @@ class LiveViewer:
         Raises:
             DeviceError: The server does not start.
         """
-        self._stage = stage
         self._min_interval_s = min_interval_s
         self._last_s = -np.inf
         self._poses: dict[str, Floats] = {}
         self._trace: Floats | None = None
+        self._camera: CameraCone | None = None
         self._server = subprocess.Popen(
             SERVER_COMMAND, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True,
             start_new_session=True,  # Ctrl-C stops the run first; the run closes the viewer
@@ -73,10 +73,14 @@ class LiveViewer:
             if name not in self._poses or np.abs(pose - self._poses[name]).max() > _MOVED:
                 self._send(move_link(name, pose))
                 self._poses[name] = pose
-        self._send(self._stage.draw_cable(frame))
+        self._send(draw_cable(frame))
         if frame.trace_m is not self._trace:
             self._send(draw_trace(frame))
             self._trace = frame.trace_m
+        if frame.camera is not None and frame.camera is not self._camera:
+            for command in draw_camera(frame.camera):
+                self._send(command)
+            self._camera = frame.camera
 
     def close(self) -> None:
         """End the server; safe to call again."""

@@ -21,7 +21,7 @@ from robots.descriptions.model import Box as DescribedBox
 from robots.descriptions.model import Link, RobotDescription, Vec3
 from robots.interfaces import Floats
 from robots.placement import Placement, PlanningScene, StaticBox
-from robots.viewer.frame import SceneFrame, thinned
+from robots.viewer.frame import CameraCone, SceneFrame, thinned
 from robots.viewer.shapes import Tube, drawn
 
 CABLE_POINTS = 120
@@ -52,19 +52,6 @@ _LIGHTS = {
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class CameraCone:
-    """What an overhead camera sees.
-
-    Attributes:
-        position_m: The camera in the world [m], shape (3,).
-        corners_m: Where the corners of its image meet the table, in order, shape (4, 3) [m].
-    """
-
-    position_m: Floats
-    corners_m: Floats
-
-
-@dataclass(frozen=True, slots=True, eq=False)
 class Stage:
     """A cell before anything moves.
 
@@ -72,14 +59,10 @@ class Stage:
         robot: Its links are drawn from its shapes.
         scene: Where the robot stands, and the boxes around it; a box named `table` gets a
             cloth and legs.
-        cable_radius_m: Radius of the cable [m].
-        camera: The overhead camera, if it is to be drawn.
     """
 
     robot: RobotDescription
     scene: PlanningScene
-    cable_radius_m: float
-    camera: CameraCone | None = None
 
     def commands(self) -> Iterator[Any]:
         """Yield the commands that build the scene."""
@@ -87,8 +70,6 @@ class Stage:
         for box in self.scene.boxes:
             yield from _table(box) if box.name == "table" else _box(f"cell/{box.name}", box, _METAL)
         yield from self._robot()
-        if self.camera is not None:
-            yield from _camera(self.camera)
 
     def _robot(self) -> Iterator[Any]:
         for link in self.robot.links:
@@ -108,11 +89,6 @@ class Stage:
         yield move_link(root.name, root_pose)
         yield from _pedestal(root, placement)
 
-    def draw_cable(self, frame: SceneFrame) -> SetObject:
-        """Return the command that draws the cable as it lies in a frame."""
-        tube = Tube(thinned(frame.cable_m, CABLE_POINTS), self.cable_radius_m)
-        return SetObject(tube, _CABLE, _path("cable"))
-
 
 def move_link(name: str, pose: Floats) -> SetTransform:
     """Return the command that puts a link to a pose: position [m], quaternion xyzw."""
@@ -120,6 +96,12 @@ def move_link(name: str, pose: Floats) -> SetTransform:
     T_world_link[:3, :3] = Rotation.from_quat(pose[3:]).as_matrix()
     T_world_link[:3, 3] = pose[:3]
     return SetTransform(T_world_link, _path(f"robot/{name}"))
+
+
+def draw_cable(frame: SceneFrame) -> SetObject:
+    """Return the command that draws the cable as it lies in a frame."""
+    tube = Tube(thinned(frame.cable_m, CABLE_POINTS), frame.cable_radius_m)
+    return SetObject(tube, _CABLE, _path("cable"))
 
 
 def draw_trace(frame: SceneFrame) -> SetObject | Delete:
@@ -176,7 +158,8 @@ def _pedestal(root: Link, placement: Placement) -> Iterator[Any]:
     yield SetTransform(T_world_block, path)
 
 
-def _camera(camera: CameraCone) -> Iterator[Any]:
+def draw_camera(camera: CameraCone) -> Iterator[Any]:
+    """Yield the commands that draw the camera and what it sees."""
     x, y, z = (float(value) for value in camera.position_m)
     yield from _box("camera/body", StaticBox("camera", (x, y, z + 0.03), _CAMERA_BOX_M), _LENS)
     edges = [(camera.position_m, corner) for corner in camera.corners_m]

@@ -21,7 +21,9 @@ from robots.viewer.html import METRE
 from robots.viewer.shapes import capsule_profile, drawn
 
 CORNERS_M = np.array([[-0.5, -0.4, 0.0], [0.5, -0.4, 0.0], [0.5, 0.4, 0.0], [-0.5, 0.4, 0.0]])
-STAGE = Stage(yumi(), table_scene(), 0.0035, CameraCone(np.array([0.0, 0.0, 1.0]), CORNERS_M))
+STAGE = Stage(yumi(), table_scene())
+CAMERA = CameraCone(np.array([0.0, 0.0, 1.0]), CORNERS_M)
+RADIUS_M = 0.0035
 HAND = "left_gripper_base"
 
 
@@ -31,7 +33,7 @@ def frame(time_s: float, trace_m=None, caption: str = "") -> SceneFrame:
     pose = np.array([0.1, 0.2, 0.3 + 0.01 * time_s, 0, 0, np.sin(turn_rad), np.cos(turn_rad)])
     s = np.linspace(-1.0, 1.0, 301)
     cable_m = np.column_stack([0.4 * s, 0.2 * np.sin(6 * s + time_s), np.full_like(s, 0.004)])
-    return SceneFrame(time_s, {HAND: pose}, cable_m, trace_m, caption)
+    return SceneFrame(time_s, {HAND: pose}, cable_m, RADIUS_M, trace_m, CAMERA, caption)
 
 
 def recording_in(path) -> dict:
@@ -77,7 +79,7 @@ def test_stage_draws_every_shape_and_puts_the_robot_in_its_place():
     paths = {command["path"] for command in lowered if command["type"] == "set_object"}
     shapes = {f"/robot/{li.name}/{n}" for li in STAGE.robot.links for n in range(len(li.shapes))}
     assert shapes <= paths
-    assert {"/cell/table", "/cell/cloth", "/camera/sight"} <= paths
+    assert {"/cell/table", "/cell/cloth"} <= paths
     root = next(c for c in lowered if c["type"] == "set_transform" and c["path"] == "/robot/body")
     T_world_body = np.reshape(root["matrix"], (4, 4)).T
     assert T_world_body[:3, 3] == pytest.approx(YUMI_AT_TABLE.position_m)
@@ -118,7 +120,7 @@ def test_replay_of_a_long_run_stays_small(tmp_path):
 
 def test_links_that_a_frame_leaves_out_stay(tmp_path):
     path = tmp_path / "run.html"
-    still = SceneFrame(1.0, {}, frame(1.0).cable_m)
+    still = SceneFrame(1.0, {}, frame(1.0).cable_m, RADIUS_M)
     write_html(STAGE, [frame(0.0), still], path)
     recording = recording_in(path)
     rows = numbers(recording["frames"]).reshape(-1, recording["width"])
@@ -185,7 +187,7 @@ def test_live_view_gives_latecomers_the_latest_frame():
     moved = [c for c in commands if c["path"] == f"/robot/{HAND}" and c["type"] == "set_transform"]
     assert moved[0]["matrix"][14] == pytest.approx(0.31)
     drawn_paths = {c["path"] for c in commands if c["type"] == "set_object"}
-    assert "/cable" in drawn_paths
+    assert {"/cable", "/camera/sight"} <= drawn_paths
     assert "/trace" not in drawn_paths
 
 
