@@ -16,6 +16,8 @@ Arm = tuple[int, int]
 # A dead end is a spur up to this many radii of the mask, and widths of the cable, of length.
 SPUR_RADII = 1.0
 SPUR_WIDTHS = 0.9
+# No cable bends to a ring as short as this; connectors with dark parts show such rings.
+RING_WIDTHS = 5.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -101,11 +103,13 @@ def _arms(edges: Sequence[Edge], count: int) -> list[list[Arm]]:
 
 
 def _without_spurs(edges: list[Edge], width_px: float) -> list[Edge]:
-    """Drop dead ends that are no longer than the mask is wide where they branch off."""
+    """Drop dead ends no longer than the mask is wide where they branch off, and tiny rings."""
     count = max((node for edge in edges for node in edge.nodes), default=-1) + 1
     degree = [len(arms) for arms in _arms(edges, count)]
     kept = []
     for edge in edges:
+        if edge.nodes[0] == edge.nodes[1] and edge.length_px < RING_WIDTHS * width_px:
+            continue
         degrees = [degree[node] for node in edge.nodes]
         inner_radius_px = float(edge.radius_px[int(degrees[0] == 1) * -1])
         longest_px = SPUR_RADII * inner_radius_px + SPUR_WIDTHS * width_px

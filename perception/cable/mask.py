@@ -5,7 +5,7 @@ survives; what rises above it is measured against the image's own noise and the 
 contrast. Wide bright things (arms, hands, furniture) survive the opening and are clutter.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
@@ -30,6 +30,7 @@ class MaskConfig:
         clutter_contrast: Share of the cable's contrast at which wide things are clutter.
         clutter_margin_px: Clutter is widened by this.
         shortest_widths: Pieces shorter than this many cable widths are dropped.
+        hole_widths2: Holes smaller than this many squared cable widths are filled.
     """
 
     smoothing_px: float = 0.8
@@ -40,6 +41,7 @@ class MaskConfig:
     clutter_contrast: float = 0.4
     clutter_margin_px: int = 14
     shortest_widths: float = 6.0
+    hole_widths2: float = 0.5
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -148,8 +150,18 @@ def _keep_cable(found: CableMask, config: MaskConfig) -> CableMask | None:
     cable = np.concatenate([[False], keep])[labels]
     if not cable.any():
         return None
-    radius_px = np.where(cable, found.radius_px, np.float32(0.0))
-    return CableMask(cable, found.clutter, radius_px, width_px, found.contrast, found.noise)
+    cable = _fill_holes(cable, config.hole_widths2 * width_px**2)
+    return replace(found, cable=cable, radius_px=radii(cable), width_px=width_px)
+
+
+def _fill_holes(cable: Bools, largest_px2: float) -> Bools:
+    """Fill dark spots within connectors, which are no loops of cable."""
+    _, *tables = cv2.connectedComponentsWithStats((~cable).astype(np.uint8), connectivity=4)
+    labels, stats = (np.asarray(table, dtype=np.int32) for table in tables[:2])
+    small = stats[:, cv2.CC_STAT_AREA] < largest_px2
+    small[0] = False
+    filled: Bools = cable | small[labels]
+    return filled
 
 
 def _piece_width(
