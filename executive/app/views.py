@@ -1,0 +1,218 @@
+"""Shows a run on the table cell: live in a browser, or as a replay made from its recording.
+
+Both follow the same messages in their recorded form, so they show the same. What perception
+believes in pixels is laid on the table here, where cameras and robots may both be known.
+"""
+
+import logging
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from pydantic import BaseModel
+
+from executive.core.errors import DeviceError
+from executive.core.world import StreamMessage
+from executive.engine.recording.messages import RecordedNode
+from executive.engine.recording.reader import Recording
+from executive.engine.recording.values import ValueEncoder
+from executive.engine.ticks import NodeStatus, Tick
+from perception.cable.types import Trace
+from perception.camera import CameraFrame, CameraModel
+from robots.descriptions.yumi import yumi
+from robots.interfaces import Floats
+from robots.placement import table_scene
+from robots.viewer import CameraCone, LiveViewer, SceneFrame, Stage
+from robots.viewer import write_html as write_page
+
+_SCENE_TOPIC = "/scene"
+_BELIEF_KEY = ":knotted_probability"
+_SHOWN_TYPES = (Trace, CameraFrame, float)
+
+_log = logging.getLogger(__name__)
+
+
+class _Array(BaseModel):
+    values: list[Any]
+
+
+class _Tuple(BaseModel):
+    items: list[float]
+
+
+class _Scene(BaseModel):
+    """A message of the scene stream; see `simulation.streams`."""
+
+    links: dict[str, list[float]]
+    cable_nodes_m: list[list[float]]
+    cable_radius_m: float
+
+
+class _Camera(BaseModel):
+    """A `CameraModel` as recordings hold it."""
+
+    width_px: int
+    height_px: int
+    focal_px: float
+    centre_px: _Tuple
+    T_world_camera: _Array
+
+    def model(self) -> CameraModel:
+        """Return the camera itself."""
+        x_px, y_px = self.centre_px.items
+        T_world_camera = np.array(self.T_world_camera.values)
+        return CameraModel(
+            self.width_px, self.height_px, self.focal_px, (x_px, y_px), T_world_camera
+        )
+
+
+class SceneFollower:
+    """Puts together what a scene looks like from the messages of a run, one after another."""
+
+    def __init__(self, nodes: Sequence[RecordedNode] = ()) -> None:
+        """Begin before the first message; `nodes` is the table that ticks refer to."""
+        parents = {node.parent for node in nodes}
+        self._leaves = {i: node.name for i, node in enumerate(nodes) if i not in parents}
+        self._scene: StreamMessage | None = None
+        self._camera: CameraModel | None = None
+        self._cone: CameraCone | None = None
+        self._trace_m: Floats | None = None
+        self._doing = ""
+        self._belief = ""
+
+    def on_scene(self, message: StreamMessage) -> None:
+        """Take the latest message of the scene stream."""
+        self._scene = message
+
+    def on_tick(self, tick: Tick) -> None:
+        """Take a tick; values are in their JSON form."""
+        for node, status in tick.changes:
+            if status is NodeStatus.RUNNING and node in self._leaves:
+                self._doing = self._leaves[node]
+        for write in tick.writes:
+            self._look_at(write.key, write.value)
+
+    def frame(self, time_s: float) -> SceneFrame | None:
+        """Return the scene as it is now known; None before its first message."""
+        if self._scene is None:
+            return None
+        scene = _Scene.model_validate_json(self._scene.data)
+        return SceneFrame(
+            time_s=time_s,
+            link_poses={name: np.array(pose) for name, pose in scene.links.items()},
+            cable_m=np.array(scene.cable_nodes_m),
+            cable_radius_m=scene.cable_radius_m,
+            trace_m=self._trace_m,
+            camera=self._cone,
+            caption=" · ".join(part for part in (self._doing, self._belief) if part),
+        )
+
+    def _look_at(self, key: str, value: Any) -> None:
+        if isinstance(value, float) and key.endswith(_BELIEF_KEY):
+            self._belief = f"P(knotted) {value:.2f}"
+        if not isinstance(value, dict):
+            return
+        if value.get("$type") == _type_name(CameraFrame):
+            self._see_through(_Camera.model_validate(value["camera"]).model())
+        elif value.get("$type") == _type_name(Trace) and self._camera is not None:
+            points_px = np.array(_Array.model_validate(value["points_px"]).values)
+            self._trace_m = self._camera.on_plane(points_px)
+
+    def _see_through(self, camera: CameraModel) -> None:
+        self._camera = camera
+        right_px, bottom_px = camera.width_px - 0.5, camera.height_px - 0.5
+        corners_px = np.array(
+            [[-0.5, -0.5], [right_px, -0.5], [right_px, bottom_px], [-0.5, bottom_px]]
+        )
+        if self._cone is None:
+            self._cone = CameraCone(camera.T_world_camera[:3, 3], camera.on_plane(corners_px))
+
+
+class LiveView:
+    """An observer of a run that shows it in a browser."""
+
+    def __init__(self) -> None:
+        """Start the viewer.
+
+        Raises:
+            DeviceError: It does not start.
+        """
+        self._viewer = LiveViewer(_stage())
+        self._follower = SceneFollower()
+        self._encoder = ValueEncoder(store_image=lambda _: 0)
+        self._alive = True
+
+    @property
+    def url(self) -> str:
+        """Where to look."""
+        return self._viewer.url
+
+    def on_tick(self, tick: Tick) -> None:
+        """Take what a tick wrote that can be seen."""
+        shown = [write for write in tick.writes if isinstance(write.value, _SHOWN_TYPES)]
+        writes = tuple(replace(each, value=self._encoder.encode(each.value)) for each in shown)
+        self._follower.on_tick(replace(tick, writes=writes))
+
+    def on_streams(self, messages: Sequence[StreamMessage]) -> None:
+        """Show the latest scene; a viewer that breaks goes dark, and the run goes on."""
+        scenes = [message for message in messages if message.topic == _SCENE_TOPIC]
+        if not scenes or not self._alive:
+            return
+        self._follower.on_scene(scenes[-1])
+        frame = self._follower.frame(scenes[-1].time_s)
+        try:
+            if frame is not None:
+                self._viewer.show(frame)
+        except DeviceError as error:
+            self._alive = False
+            _log.warning("%s", error)
+
+    def close(self) -> None:
+        """End the viewer."""
+        self._viewer.close()
+
+
+def open_live_view() -> LiveView:
+    """Start a live view of the table cell.
+
+    Raises:
+        DeviceError: The viewer does not start.
+    """
+    return LiveView()
+
+
+def write_html(recording: Path, page: Path) -> None:
+    """Write the replay of a recording as one HTML file that opens offline.
+
+    Raises:
+        RecordingError: The recording cannot be read, or holds no scene.
+    """
+    run = Recording.open(recording)
+    title = f"{run.header.mission}, seed {run.header.seed}"
+    write_page(_stage(), scene_frames(run), page, title=title)
+
+
+def scene_frames(recording: Recording) -> Iterator[SceneFrame]:
+    """Yield the scene as it was known at every tick of a recording."""
+    follower = SceneFollower(recording.header.nodes)
+    scenes = (each for each in recording.streams() if each.topic == _SCENE_TOPIC)
+    scene = next(scenes, None)
+    for tick in recording.ticks():
+        while scene is not None and scene.time_s <= tick.time_s:
+            follower.on_scene(scene)
+            scene = next(scenes, None)
+        follower.on_tick(tick)
+        frame = follower.frame(tick.time_s)
+        if frame is not None:
+            yield frame
+
+
+def _stage() -> Stage:
+    return Stage(yumi(), table_scene())
+
+
+def _type_name(kind: type) -> str:
+    """Return the name that recordings give a type."""
+    return f"{kind.__module__}.{kind.__qualname__}"
