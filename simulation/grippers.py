@@ -1,5 +1,6 @@
 """Fingers that open and close at their own speed, and what they take hold of."""
 
+import math
 from dataclasses import dataclass
 
 from robots.descriptions.yumi import FINGER_SPEED_M_S, FINGER_STROKE_M
@@ -49,10 +50,10 @@ class Gripper:
         """Move the fingers on; both move, each at its own speed."""
         reach_m = 2.0 * FINGER_SPEED_M_S * duration_s
         left_m = self.target_m - self.opening_m
-        arrived = abs(left_m) <= reach_m
-        self.opening_m = self.target_m if arrived else self.opening_m + (
-            reach_m if left_m > 0.0 else -reach_m
-        )
+        if abs(left_m) <= reach_m:
+            self.opening_m = self.target_m
+        else:
+            self.opening_m += math.copysign(reach_m, left_m)
 
     def _target(self, grip: Grip, diameter_m: float) -> float:
         taken_m = self.closed_on * diameter_m + _SLACK_M if self.closed_on else 0.0

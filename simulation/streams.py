@@ -17,6 +17,7 @@ A message is written when something has changed since the last of its kind.
 import json
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -89,9 +90,10 @@ class Stream:
         return messages
 
 
-def _rounded(values: object, digits: int) -> object:
+def _rounded(values: object, digits: int) -> list[Any]:
     # Adding zero turns -0.0, which would look like a change, into 0.0.
-    return (np.round(np.asarray(values, dtype=np.float64), digits) + 0.0).tolist()
+    rounded: list[Any] = (np.round(np.asarray(values, dtype=np.float64), digits) + 0.0).tolist()
+    return rounded
 
 
 def _json(message: dict[str, object]) -> bytes:

@@ -28,17 +28,18 @@ _ROBOT_GROUP, _TABLE_GROUP = 2, 1
 
 
 def _pybullet() -> Any:
-    """Import PyBullet, whose greeting would end up in what a command prints."""
+    """Import PyBullet, whose greeting would otherwise end up in what a command prints."""
     sys.stdout.flush()
-    stdout = os.dup(1)
-    os.dup2(2, 1)
+    stdout, nowhere = os.dup(1), os.open(os.devnull, os.O_WRONLY)
+    os.dup2(nowhere, 1)
     try:
         import pybullet
 
-        ctypes.CDLL(None).fflush(None)
+        ctypes.CDLL(None).fflush(None)  # the greeting waits in the C library's buffer
     finally:
         os.dup2(stdout, 1)
         os.close(stdout)
+        os.close(nowhere)
     return pybullet
 
 

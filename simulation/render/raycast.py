@@ -12,13 +12,14 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from simulation.render.primitives import CAPSULE, Primitives
+from simulation.render.primitives import CAPSULE, Material, Primitives
 
 Floats = NDArray[np.float64]
 Vector = tuple[float, float, float]
 
 MISS = math.inf
 NEAREST_M = 0.05  # shapes closer to the camera than this are not drawn
+_PAINT = int(Material.PAINT)
 
 
 class View(NamedTuple):
@@ -215,14 +216,20 @@ def _window(
 
 @njit(cache=True)
 def cast(
-    primitives: Primitives, view: View, depth: NDArray[np.float32], owner: NDArray[np.int32]
+    primitives: Primitives,
+    view: View,
+    grain: int,
+    depth: NDArray[np.float32],
+    owner: NDArray[np.int32],
 ) -> None:
-    """Write the depth [m] and the index of the nearest shape of every pixel.
+    """Write the depth [m] and the index of the nearest shape of every ray.
 
     Args:
         primitives: What is there.
         view: From where, and how large.
-        depth: Written, (height, width); `MISS` where nothing is.
+        grain: Painted bodies, large and plain, are met by one ray in a block of this many
+            rays in x and y.
+        depth: Written, (height, width), multiples of the grain; `MISS` where nothing is.
         owner: Written, same shape; -1 where nothing is.
     """
     height, width = depth.shape
@@ -231,10 +238,15 @@ def cast(
     origin = eye(view)
     for index in range(len(primitives.kind)):
         kind, shape = primitives.kind[index], primitives.shape[index]
+        block = grain if primitives.material[index] == _PAINT else 1
+        middle = 0.5 * (block - 1)
         u0, u1, v0, v1 = _window(kind, shape, view, width, height)
-        for v in range(v0, v1):
-            for u in range(u0, u1):
-                length = _hit(kind, shape, origin, pixel_ray(view, u, v))
-                if length < depth[v, u]:
-                    depth[v, u] = length
-                    owner[v, u] = index
+        for v in range(v0 - v0 % block, v1, block):
+            for u in range(u0 - u0 % block, u1, block):
+                length = _hit(kind, shape, origin, pixel_ray(view, u + middle, v + middle))
+                if length < MISS:
+                    for row in range(v, v + block):
+                        for column in range(u, u + block):
+                            if length < depth[row, column]:
+                                depth[row, column] = length
+                                owner[row, column] = index

@@ -10,7 +10,7 @@ from perception.camera import CameraModel
 from simulation.render.backdrop import make_backdrop
 from simulation.render.primitives import Material, Primitives
 from simulation.render.raycast import View, cast
-from simulation.render.shading import Image, Lamp, Rays, shade, shade_plane
+from simulation.render.shading import Image, Lamp, Rays, plane_shadow, shade, shade_plane
 
 Floats = NDArray[np.float64]
 
@@ -18,6 +18,7 @@ SUPERSAMPLING = 2  # rays a pixel in x and in y
 LAMP_POSITION_M = (-0.35, -0.02, 1.15)
 _SHADOW_TEXEL_M = 0.0008  # on the table's surface
 _SHADOW_MARGIN_M = 0.06  # around the table
+_LAMP_GRAIN = 3  # see `raycast.cast`
 
 # Share by which a surface flickers under the projector's coherent light.
 _CLOTH_SPECKLE = 0.060
@@ -59,18 +60,20 @@ class Renderer:
         lamp_view, size = _lamp_view(table_size_m)
         self._lamp_rays = _no_rays(size)
         self._lamp = Lamp(lamp_view, self._lamp_rays.depth)
+        self._plane = plane_shadow(self._backdrop.on_table, self._view, self._lamp)
 
     def render(self, primitives: Primitives) -> Rendering:
         """Return the table with these shapes on and above it."""
-        cast(primitives, self._lamp.seen_from, self._lamp_rays.depth, self._lamp_rays.owner)
-        cast(primitives, self._fine_view, self._rays.depth, self._rays.owner)
-        shade(primitives, self._fine_view, self._lamp, self._rays)
+        lamp, rays = self._lamp, self._rays
+        cast(primitives, lamp.seen_from, _LAMP_GRAIN, lamp.shadow, self._lamp_rays.owner)
+        cast(primitives, self._fine_view, SUPERSAMPLING, rays.depth, rays.owner)
+        shade(primitives, self._fine_view, lamp, SUPERSAMPLING, rays)
         backdrop = self._backdrop
         image, depth_m = backdrop.brightness.copy(), backdrop.depth_m.copy()
-        shade_plane(backdrop.on_table, self._view, self._lamp, image, depth_m)
+        shade_plane(self._plane, lamp.shadow, image, depth_m)
         speckle = np.where(backdrop.on_table, np.float32(_CLOTH_SPECKLE), np.float32(0.01))
         flicker = np.array([_SPECKLE[Material(kind)] for kind in Material], np.float32)
-        _merge(self._rays, flicker[primitives.material], backdrop.light, image, speckle, depth_m)
+        _merge(rays, flicker[primitives.material], backdrop.light, image, speckle, depth_m)
         return Rendering(image, speckle, depth_m)
 
 
@@ -123,7 +126,8 @@ def _lamp_view(table_size_m: tuple[float, float]) -> tuple[View, tuple[int, int]
     """Return the lamp's view straight down, and its height and width [px]."""
     x, y, z = LAMP_POSITION_M
     half = 0.5 * np.asarray(table_size_m) + _SHADOW_MARGIN_M
-    width, height = np.ceil(2.0 * half / _SHADOW_TEXEL_M).astype(int)
+    blocks = np.ceil(2.0 * half / (_SHADOW_TEXEL_M * _LAMP_GRAIN))
+    width, height = _LAMP_GRAIN * blocks.astype(int)
     pose = np.diag([1.0, -1.0, -1.0, 1.0])
     pose[:3, 3] = LAMP_POSITION_M
     cx, cy = (x + half[0]) / _SHADOW_TEXEL_M, (half[1] - y) / _SHADOW_TEXEL_M

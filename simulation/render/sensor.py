@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+import cv2
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
@@ -34,7 +35,7 @@ _SIDE_SHARE = 0.17  # how much of a pixel's noise its right-hand neighbour share
 
 def expose(rendering: Rendering, sensor: SensorParameters, rng: np.random.Generator) -> GreyImage:
     """Return the eight-bit image of a scene."""
-    blurred = _blur(rendering.brightness, _kernel(sensor.blur_px))
+    blurred = _blur(rendering.brightness, sensor.blur_px)
     noise = rng.standard_normal(blurred.shape, np.float32)
     return _quantise(blurred, rendering.speckle, noise, sensor.speckle, sensor.read_noise)
 
@@ -47,31 +48,10 @@ def measure_depth(
     return rendering.depth_m + np.float32(sensor.depth_noise_m) * noise
 
 
-def _kernel(sigma_px: float) -> Image:
-    """Return a Gaussian of five taps that sums to one."""
-    offsets = np.arange(-2, 3)
-    taps = np.exp(-0.5 * (offsets / max(sigma_px, 1e-3)) ** 2)
-    return (taps / taps.sum()).astype(np.float32)
-
-
-@njit(cache=True)
-def _blur(image: Image, taps: Image) -> Image:
-    height, width = image.shape
-    across = image.copy()
-    for v in range(height):
-        for u in range(2, width - 2):
-            total = np.float32(0.0)
-            for tap in range(5):
-                total += taps[tap] * image[v, u + tap - 2]
-            across[v, u] = total
-    down = across.copy()
-    for v in range(2, height - 2):
-        for u in range(width):
-            total = np.float32(0.0)
-            for tap in range(5):
-                total += taps[tap] * across[v + tap - 2, u]
-            down[v, u] = total
-    return down
+def _blur(image: Image, sigma_px: float) -> Image:
+    if sigma_px == 0.0:
+        return image
+    return np.asarray(cv2.GaussianBlur(image, (0, 0), sigma_px), np.float32)
 
 
 @njit(cache=True)
@@ -85,7 +65,8 @@ def _quantise(
         left = 0.0
         for u in range(width):
             grey = 255.0 * brightness[v, u]
-            spread = np.hypot(read_noise, speckle_factor * speckle[v, u] * grey)
+            flicker = speckle_factor * speckle[v, u] * grey
+            spread = np.sqrt(read_noise * read_noise + flicker * flicker)
             grey += spread * scale * (noise[v, u] + _SIDE_SHARE * left)
             left = noise[v, u]
             image[v, u] = np.uint8(min(max(grey + 0.5, 0.0), 255.0))

@@ -75,18 +75,24 @@ class Rays(NamedTuple):
 
 
 @njit(cache=True)
-def lit(point: Vector, lamp: Lamp) -> float:
-    """Return the share of the lamp that reaches a point: mean of 3 x 3 shadow map lookups."""
+def _free_share(shadow: Image, row: int, column: int, depth: float) -> float:
+    """Return the share of 3 x 3 texels in which nothing is nearer to the lamp than `depth`."""
+    free = 0
+    for v in range(row - 1, row + 2):
+        for u in range(column - 1, column + 2):
+            free += shadow[v, u] > depth - _BIAS_M
+    return free / 9.0
+
+
+@njit(cache=True)
+def _lit(point: Vector, lamp: Lamp) -> float:
+    """Return the share of the lamp that reaches a point."""
     x, y, z = image_point(lamp.seen_from, point)
     height, width = lamp.shadow.shape
-    u, v = int(math.floor(x + 0.5)), int(math.floor(y + 0.5))
-    if not (1 <= u < width - 1 and 1 <= v < height - 1):
-        return 1.0
-    free = 0
-    for row in range(v - 1, v + 2):
-        for column in range(u - 1, u + 2):
-            free += lamp.shadow[row, column] > z - _BIAS_M
-    return free / 9.0
+    column, row = math.floor(x + 0.5), math.floor(y + 0.5)
+    if 1 <= column < width - 1 and 1 <= row < height - 1:
+        return _free_share(lamp.shadow, row, column, z)
+    return 1.0
 
 
 @njit(cache=True)
@@ -104,7 +110,7 @@ def _braid(arc_m: float, across_rad: float) -> float:
     around_turns = _BRAID_STARTS * across_rad / (2.0 * math.pi)
     right, left = along_turns + around_turns, along_turns - around_turns
     weave = math.cos(2.0 * math.pi * right) * math.cos(2.0 * math.pi * left)
-    cell = int(math.floor(2.0 * right)) * 7919 + int(math.floor(2.0 * left))
+    cell = math.floor(2.0 * right) * 7919 + math.floor(2.0 * left)
     return 1.0 + _BRAID_DEPTH * weave + _THREAD_SPREAD * _thread(cell)
 
 
@@ -149,7 +155,7 @@ def _brightness(
     if material == _BRAID:
         albedo *= _sleeve(shape, primitives.arc_m[index], point, outward)
         albedo *= max(dot(outward, to_eye), 0.0) ** _LIMB_EXPONENT
-    share = lit(along(point, outward, 0.0005), lamp)
+    share = _lit(along(point, outward, 0.0005), lamp)
     sky = 0.5 + 0.5 * max(outward[2], 0.0)
     diffuse = (1.0 - AMBIENT) * max(dot(outward, to_lamp), 0.0) * share
     value = albedo * (AMBIENT * sky * openness + diffuse)
@@ -157,41 +163,96 @@ def _brightness(
 
 
 @njit(cache=True)
-def shade(primitives: Primitives, view: View, lamp: Lamp, rays: Rays) -> None:
-    """Write the brightness of every ray that met a shape."""
+def _ray_brightness(
+    primitives: Primitives, view: View, lamp: Lamp, rays: Rays, v: int, u: int
+) -> float:
     viewer = eye(view)
-    height, width = rays.depth.shape
-    for v in range(height):
-        for u in range(width):
-            index = rays.owner[v, u]
-            if index >= 0:
-                point = along(viewer, pixel_ray(view, u, v), rays.depth[v, u])
-                openness = _openness(rays.depth, v, u)
-                rays.brightness[v, u] = _brightness(
-                    primitives, index, point, viewer, lamp, openness
-                )
+    point = along(viewer, pixel_ray(view, u, v), rays.depth[v, u])
+    openness = _openness(rays.depth, v, u)
+    return _brightness(primitives, rays.owner[v, u], point, viewer, lamp, openness)
 
 
 @njit(cache=True)
-def shade_plane(
-    on_plane: NDArray[np.bool_], view: View, lamp: Lamp, image: Image, depth_m: Image
-) -> None:
+def shade(primitives: Primitives, view: View, lamp: Lamp, grain: int, rays: Rays) -> None:
+    """Write the brightness of every ray that met a shape.
+
+    Args:
+        primitives: What is there.
+        view: From where it is seen.
+        lamp: What lights it.
+        grain: As in `raycast.cast`; a block of rays that met the same painted body shares one
+            brightness.
+        rays: From `raycast.cast`; brightness is written.
+    """
+    owner, brightness = rays.owner, rays.brightness
+    height, width = owner.shape
+    for v in range(0, height, grain):
+        for u in range(0, width, grain):
+            first, shared = owner[v, u], np.float32(math.nan)
+            if first >= 0 and primitives.material[first] == _PAINT:
+                shared = _ray_brightness(primitives, view, lamp, rays, v, u)
+            for row in range(v, v + grain):
+                for column in range(u, u + grain):
+                    index = owner[row, column]
+                    if index >= 0 and index == first and not math.isnan(shared):
+                        brightness[row, column] = shared
+                    elif index >= 0:
+                        brightness[row, column] = _ray_brightness(
+                            primitives, view, lamp, rays, row, column
+                        )
+
+
+class PlaneShadow(NamedTuple):
+    """Where the shadow map of a lamp tells about the plane z = 0, for each pixel of a view.
+
+    Attributes:
+        row: Row in the shadow map, shape (height, width); -1 where the plane is not seen.
+        column: Column in the shadow map, same shape.
+        depth: Depth of the plane from the lamp [m], same shape.
+    """
+
+    row: NDArray[np.int32]
+    column: NDArray[np.int32]
+    depth: Image
+
+
+@njit(cache=True)
+def plane_shadow(on_plane: NDArray[np.bool_], view: View, lamp: Lamp) -> PlaneShadow:
+    """Return where to look for shadows; camera and lamp stand still, so once is enough."""
+    viewer = eye(view)
+    height, width = on_plane.shape
+    rows, columns = np.full((height, width), -1, np.int32), np.zeros((height, width), np.int32)
+    depth = np.zeros((height, width), np.float32)
+    shadow_height, shadow_width = lamp.shadow.shape
+    for v in range(height):
+        for u in range(width):
+            ray = pixel_ray(view, u, v)
+            point = along(viewer, ray, -viewer[2] / ray[2])
+            x, y, z = image_point(lamp.seen_from, point)
+            row, column = math.floor(y + 0.5), math.floor(x + 0.5)
+            inside = 1 <= column < shadow_width - 1 and 1 <= row < shadow_height - 1
+            if on_plane[v, u] and inside:
+                rows[v, u], columns[v, u], depth[v, u] = row, column, z
+    return PlaneShadow(rows, columns, depth)
+
+
+@njit(cache=True)
+def shade_plane(where: PlaneShadow, shadow: Image, image: Image, depth_m: Image) -> None:
     """Throw shadows on the plane z = 0; depth is unknown where the lamp does not reach.
 
     Args:
-        on_plane: Where the plane is seen, (height, width).
-        view: Of the image.
-        lamp: What throws the shadows.
+        where: From `plane_shadow`.
+        shadow: Depth of what the lamp's light meets first [m].
         image: Brightness without shadows; is darkened.
         depth_m: Distance along the view; is set to NaN in shadows.
     """
-    viewer = eye(view)
     height, width = image.shape
     for v in range(height):
         for u in range(width):
-            if on_plane[v, u]:
-                ray = pixel_ray(view, u, v)
-                share = lit(along(viewer, ray, -viewer[2] / ray[2]), lamp)
-                image[v, u] *= AMBIENT + (1.0 - AMBIENT) * share
+            row, column = where.row[v, u], where.column[v, u]
+            if row >= 0:
+                share = _free_share(shadow, row, column, where.depth[v, u])
+                if share < 1.0:
+                    image[v, u] *= AMBIENT + (1.0 - AMBIENT) * share
                 if share < 0.5:
                     depth_m[v, u] = np.nan
