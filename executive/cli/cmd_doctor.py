@@ -1,11 +1,10 @@
 """`cellwright doctor`: whether this machine can run missions, and what to do if not."""
 
 import typer
-from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from executive.cli.console import chatter, stdout_kept_for_the_result
+from executive.cli.console import chatter, results, stdout_kept_for_the_result
 from executive.cli.doctor_checks import CHECKS, WARNINGS, Check, CheckError
 
 
@@ -22,7 +21,7 @@ def doctor() -> None:
                 found, fine = _tried(check)
             broken |= not fine and check.name not in WARNINGS
             table.add_row(_mark(check, fine), check.name, found, "" if fine else check.fix)
-    Console(highlight=False).print(table)
+    results().print(table)
     if broken:
         raise typer.Exit(3)
 

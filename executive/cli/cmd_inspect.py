@@ -6,12 +6,12 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Annotated
 
-import click
 import typer
 from rich.console import Console
 from rich.text import Text
 
-from executive.core.errors import InputError
+from executive.cli.console import results
+from executive.core.errors import InputError, RecordingError
 from executive.engine.recording.reader import Recording
 from executive.inspector.changes import Change, matching_nodes, status_changes
 from executive.inspector.documents import change_document, tick_document
@@ -24,9 +24,7 @@ _SAME_AS = {"\x1b[C": "n", "\x1b[D": "p", " ": "n"}
 
 def inspect(
     recording: Annotated[Path, typer.Argument(metavar="RUN", help="Recording of a run.")],
-    tick: Annotated[
-        int | None, typer.Option(help="Show this tick; -1 is the last. The last by default.")
-    ] = None,
+    tick: Annotated[int | None, typer.Option(help="Show this tick; -1 is the last record.")] = None,
     changes: Annotated[
         bool, typer.Option("--changes", help="List every change of status.")
     ] = False,
@@ -42,9 +40,9 @@ def inspect(
 
     On a terminal, keys step through the ticks.
     """
-    run = Recording.open(recording)
+    run = _opened(recording)
     nodes = matching_nodes(run.header.nodes, node)
-    console = Console(highlight=False, no_color=plain or None)
+    console = results(colour=not plain)
     if changes:
         _print_changes(console, status_changes(run, nodes), as_json)
         return
@@ -57,13 +55,33 @@ def inspect(
         _step(console, run, number, nodes)
 
 
+def _opened(path: Path) -> Recording:
+    try:
+        run = Recording.open(path)
+    except RecordingError as error:
+        raise InputError(str(error)) from error  # the user named the wrong file
+    if len(run) == 0:
+        raise InputError(f"{path}: holds no tick; the run was killed before the first one")
+    return run
+
+
 def _tick_number(run: Recording, asked: int | None) -> int:
     count = len(run)
-    number = count - 1 if asked is None else asked + count if asked < 0 else asked
+    if asked is None:
+        return _last_visited(run)
+    number = asked + count if asked < 0 else asked
     if not 0 <= number < count:
-        expected = f"0 to {count - 1}, or -{count} to -1" if count else "a run with ticks in it"
-        raise InputError(f"--tick {asked}: no such tick in {run.path}; expected {expected}")
+        raise InputError(
+            f"--tick {asked}: no such tick in {run.path}; expected 0 to {count - 1}, "
+            f"or -{count} to -1"
+        )
     return number
+
+
+def _last_visited(run: Recording) -> int:
+    """Return the last real tick: after it the runner may have stopped what still ran."""
+    last = len(run) - 1
+    return last if run.tick(last).visited or last == 0 else last - 1
 
 
 def _print_changes(console: Console, changes: Iterable[Change], as_json: bool) -> None:
@@ -95,7 +113,7 @@ def _step(console: Console, run: Recording, number: int, nodes: frozenset[int]) 
         console.print(summary_view(run), "", tick_view(run, stepper.number, nodes))
         console.print(Text(f"{KEYS}  {stepper.note}", "bright_black"))
         try:
-            key = click.getchar()
+            key = typer.getchar()
         except (EOFError, KeyboardInterrupt):
             return
 

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Annotated
 import numpy as np
 import typer
 from pydantic import JsonValue
-from rich.console import Console
 from rich.table import Table
+from rich.text import Text
 
-from executive.cli.console import chatter, print_error, stdout_kept_for_the_result
+from executive.cli.console import chatter, print_error, results, stdout_kept_for_the_result
 from executive.cli.images import read_grey, write_image
 from executive.core.errors import InputError
 
@@ -31,7 +31,7 @@ def cable(
     images: Annotated[list[Path], typer.Argument(metavar="IMAGE...", help="Image files.")],
     start: Annotated[
         str | None,
-        typer.Option(metavar="X,Y", help="Where to start tracing [px]; found when left out."),
+        typer.Option(metavar="X,Y", help="Pixel to start tracing at; found when left out."),
     ] = None,
     as_json: Annotated[
         bool, typer.Option("--json", help="Print one line of JSON an image on stdout.")
@@ -100,7 +100,7 @@ def _print_scene(path: Path, scene: "CableScene", as_json: bool) -> None:
     table.add_row("knots", str(len(scene.knots)))
     table.add_row("P(knotted)", f"{scene.knotted_probability:.3f}")
     table.add_row("took", f"{scene.seconds:.2f} s")
-    Console(highlight=False).print(f"[bold]{path}[/]", table)
+    results().print(Text(str(path), "bold"), table)
 
 
 def _draw(out: Path, image: "GreyImage", scene: "CableScene") -> None:

@@ -11,12 +11,8 @@ from pydantic import JsonValue
 from rich.console import Console
 from rich.text import Text
 
-from executive.cli.console import (
-    RunDisplay,
-    chatter,
-    print_error,
-    stdout_kept_for_the_result,
-)
+from executive.cli.console import chatter, print_error, results, stdout_kept_for_the_result
+from executive.cli.run_display import RunDisplay
 from executive.cli.settings import apply_settings
 from executive.core.errors import CellwrightError, InputError
 from executive.engine.control import EmergencyStopped, RunControl, stopped_by_signals
@@ -67,7 +63,7 @@ def run(
         typer.Option(dir_okay=False, help="Recording; runs/TIME_MISSION_SEED.mcap by default."),
     ] = None,
     timeout: Annotated[
-        float | None, typer.Option(min=0.0, help="Limit on the cell's clock [s].")
+        float | None, typer.Option(min=0.0, help="Limit on the cell's clock, in seconds.")
     ] = None,
     view: Annotated[bool, typer.Option("--view", help="Show the cell live in a browser.")] = False,
     html: Annotated[
@@ -208,7 +204,7 @@ def _print_summary(report: RunReport) -> None:
         ("recorded", Text(report.recording or "")),
         ("open it", Text(f"cellwright inspect {report.recording}" if report.recording else "")),
     ]
-    console = Console(highlight=False)
+    console = results()
     for name, text in lines:
         if text:
             console.print(Text.assemble((f"{name:<10}", "bright_black"), text), soft_wrap=True)

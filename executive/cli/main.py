@@ -1,44 +1,72 @@
-"""The command `cellwright`: every subcommand, and what an error looks like.
+"""The command `cellwright`: its subcommands, and what an error looks like.
 
-Importing this loads no simulator, planner or network: a command imports what it needs when
-it runs.
+A subcommand's module is imported when that subcommand is asked for, so `check` does not wait
+for what `run` needs. None of them loads a simulator, a planner or a network before it runs.
 """
 
 import sys
 import traceback
-from importlib.metadata import version
-from typing import Annotated
+from collections.abc import Mapping
+from importlib import import_module
+from types import MappingProxyType
+from typing import Annotated, Any
 
 import typer
+from typer.core import TyperGroup
 
-from executive.cli.cmd_check import check
-from executive.cli.cmd_doctor import doctor
-from executive.cli.cmd_inspect import inspect
-from executive.cli.cmd_perceive import perceive
-from executive.cli.cmd_run import run
-from executive.cli.cmd_skills import skills
-from executive.cli.cmd_tree import tree
 from executive.cli.console import chatter, print_error
 from executive.core.errors import CellwrightError, InputError
 
+_COMMANDS: Mapping[str, str] = MappingProxyType(
+    {
+        "run": "executive.cli.cmd_run",
+        "check": "executive.cli.cmd_check",
+        "inspect": "executive.cli.cmd_inspect",
+        "skills": "executive.cli.cmd_skills",
+        "tree": "executive.cli.cmd_tree",
+        "perceive": "executive.cli.cmd_perceive",
+        "doctor": "executive.cli.cmd_doctor",
+    }
+)
+
+
+class _LazyCommands(TyperGroup):
+    """Commands by name; each is a function or a group of the same name in its module.
+
+    Contexts and commands are `Any`: typer brings its own, private copy of click's.
+    """
+
+    def list_commands(self, ctx: Any) -> list[str]:  # noqa: ARG002 - as the base class asks
+        """Return the names in the order of the help page."""
+        return [*_COMMANDS]
+
+    def get_command(self, ctx: Any, cmd_name: str) -> Any:  # noqa: ARG002 - see above
+        """Import and return a command, None where there is none of that name."""
+        if cmd_name not in _COMMANDS:
+            return None
+        command = getattr(import_module(_COMMANDS[cmd_name]), cmd_name)
+        holder = typer.Typer()
+        if isinstance(command, typer.Typer):
+            holder.add_typer(command, name=cmd_name)
+        else:
+            holder.command(cmd_name)(command)
+        return typer.main.get_group(holder).commands[cmd_name]
+
+
 app = typer.Typer(
     name="cellwright",
+    cls=_LazyCommands,
     help="Behaviour trees for robot cells: compose them, run missions, look at what they did.",
     no_args_is_help=True,
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-app.command()(run)
-app.command()(check)
-app.command()(inspect)
-app.command()(skills)
-app.add_typer(tree, name="tree")
-app.add_typer(perceive, name="perceive")
-app.command()(doctor)
 
 
 def _print_version(wanted: bool) -> None:
     if wanted:
+        from importlib.metadata import version
+
         typer.echo(f"cellwright {version('cellwright')}")
         raise typer.Exit
 
@@ -47,7 +75,9 @@ def _print_version(wanted: bool) -> None:
 def _options(
     _: Annotated[
         bool,
-        typer.Option("--version", callback=_print_version, is_eager=True, help="Print it and go."),
+        typer.Option(
+            "--version", callback=_print_version, is_eager=True, help="Print it and exit."
+        ),
     ] = False,
 ) -> None:
     """Take the options that stand before a command."""

@@ -109,7 +109,11 @@ def blackboard_view(recording: Recording, number: int) -> RenderableType | None:
         table.add_column(column, overflow="ellipsis", no_wrap=True)
     for key, state in states.items():
         fresh = "bold" if state.tick == number else ""
-        table.add_row(
-            Text(key, fresh), Text(brief(state.value)), state.writer or "input", str(state.tick)
-        )
+        writer = _tail(state.writer) or "input"
+        table.add_row(Text(_tail(key), fresh), Text(brief(state.value)), writer, str(state.tick))
     return table
+
+
+def _tail(path: str) -> str:
+    """Return the end of a path: keys and nodes of deep trees have names longer than a line."""
+    return path.rpartition("/")[2]
