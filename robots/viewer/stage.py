@@ -41,7 +41,7 @@ _CLOTH_M = 0.002
 _CAMERA_BOX_M = (0.10, 0.06, 0.06)
 # Where the eye stands at first, world axes [m]; it looks at the table's centre.
 _EYE_M: Vec3 = (0.85, 1.50, 1.05)
-_FIELD_OF_VIEW_DEG = 38.0
+_FIELD_OF_VIEW_DEG = 42.0
 # Meshcat's own lights, dimmed so that a white robot keeps its shape.
 _LIGHTS = {
     "AmbientLight": 0.68,
