@@ -4,7 +4,6 @@ The arms touch nothing but the table here; the cable is pushed by capsules that 
 (`simulation.table_world`), and collisions between the arms are the planner's business.
 """
 
-import ctypes
 import math
 import os
 import sys
@@ -28,17 +27,15 @@ _ROBOT_GROUP, _TABLE_GROUP = 2, 1
 
 
 def _pybullet() -> Any:
-    """Import PyBullet, whose greeting would otherwise end up in what a command prints."""
-    sys.stdout.flush()
-    stdout, nowhere = os.dup(1), os.open(os.devnull, os.O_WRONLY)
-    os.dup2(nowhere, 1)
+    """Import PyBullet without the greeting that it writes to standard error."""
+    sys.stderr.flush()
+    stderr, nowhere = os.dup(2), os.open(os.devnull, os.O_WRONLY)
+    os.dup2(nowhere, 2)
     try:
         import pybullet
-
-        ctypes.CDLL(None).fflush(None)  # the greeting waits in the C library's buffer
     finally:
-        os.dup2(stdout, 1)
-        os.close(stdout)
+        os.dup2(stderr, 2)
+        os.close(stderr)
         os.close(nowhere)
     return pybullet
 

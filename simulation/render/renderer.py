@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+import cv2
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
@@ -10,7 +11,7 @@ from perception.camera import CameraModel
 from simulation.render.backdrop import make_backdrop
 from simulation.render.primitives import Material, Primitives
 from simulation.render.raycast import View, cast
-from simulation.render.shading import Image, Lamp, Rays, plane_shadow, shade, shade_plane
+from simulation.render.shading import AMBIENT, Image, Lamp, Rays, plane_light, plane_shadow, shade
 
 Floats = NDArray[np.float64]
 
@@ -19,6 +20,7 @@ LAMP_POSITION_M = (-0.35, -0.02, 1.15)
 _SHADOW_TEXEL_M = 0.0008  # on the table's surface
 _SHADOW_MARGIN_M = 0.06  # around the table
 _LAMP_GRAIN = 3  # see `raycast.cast`
+_PENUMBRA_PX = 1.4  # the lamp is no point; its shadows have soft edges
 
 # Share by which a surface flickers under the projector's coherent light.
 _CLOTH_SPECKLE = 0.060
@@ -69,8 +71,9 @@ class Renderer:
         cast(primitives, self._fine_view, SUPERSAMPLING, rays.depth, rays.owner)
         shade(primitives, self._fine_view, lamp, SUPERSAMPLING, rays)
         backdrop = self._backdrop
-        image, depth_m = backdrop.brightness.copy(), backdrop.depth_m.copy()
-        shade_plane(self._plane, lamp.shadow, image, depth_m)
+        light = cv2.GaussianBlur(plane_light(self._plane, lamp.shadow), (0, 0), _PENUMBRA_PX)
+        image = backdrop.brightness * (AMBIENT + (1.0 - AMBIENT) * light)
+        depth_m = np.where(light < 0.5, np.float32(np.nan), backdrop.depth_m)
         speckle = np.where(backdrop.on_table, np.float32(_CLOTH_SPECKLE), np.float32(0.01))
         flicker = np.array([_SPECKLE[Material(kind)] for kind in Material], np.float32)
         _merge(rays, flicker[primitives.material], backdrop.light, image, speckle, depth_m)

@@ -32,14 +32,17 @@ from simulation.render.raycast import (
 Image = NDArray[np.float32]
 
 AMBIENT = 0.42  # share of the light that comes from all around
-_BIAS_M = 0.0015  # how much nearer to the lamp something must be to throw a shadow
+# How much nearer to the lamp something must be to throw a shadow on bodies, and on the cloth,
+# whose pile hides the shadow of what lies flat on it.
+_BIAS_M, _PILE_BIAS_M = 0.0015, 0.0038
 
 _BRAID_PITCH_M = 0.0052  # along the cable, between threads of one winding direction
 _BRAID_STARTS = 4  # threads of one winding direction around the cable
 _BRAID_DEPTH = 0.34
 _THREAD_SPREAD = 0.22  # threads differ in brightness by up to this share
 
-_LIMB_EXPONENT = 1.0  # the sleeve's flanks send little light back to a lens beside the lamp
+# The sleeve's flanks send less light back to a lens beside the lamp than its ridge does.
+_FLANK, _LIMB_EXPONENT = 0.35, 3.0
 
 _BRAID, _METAL, _PAINT = int(Material.BRAID), int(Material.METAL), int(Material.PAINT)
 
@@ -80,7 +83,7 @@ def _free_share(shadow: Image, row: int, column: int, depth: float) -> float:
     free = 0
     for v in range(row - 1, row + 2):
         for u in range(column - 1, column + 2):
-            free += shadow[v, u] > depth - _BIAS_M
+            free += shadow[v, u] > depth
     return free / 9.0
 
 
@@ -91,7 +94,7 @@ def _lit(point: Vector, lamp: Lamp) -> float:
     height, width = lamp.shadow.shape
     column, row = math.floor(x + 0.5), math.floor(y + 0.5)
     if 1 <= column < width - 1 and 1 <= row < height - 1:
-        return _free_share(lamp.shadow, row, column, z)
+        return _free_share(lamp.shadow, row, column, z - _BIAS_M)
     return 1.0
 
 
@@ -154,7 +157,8 @@ def _brightness(
     albedo = primitives.albedo[index]
     if material == _BRAID:
         albedo *= _sleeve(shape, primitives.arc_m[index], point, outward)
-        albedo *= max(dot(outward, to_eye), 0.0) ** _LIMB_EXPONENT
+        facing = max(dot(outward, to_eye), 0.0)
+        albedo *= _FLANK + (1.0 - _FLANK) * facing**_LIMB_EXPONENT
     share = _lit(along(point, outward, 0.0005), lamp)
     sky = 0.5 + 0.5 * max(outward[2], 0.0)
     diffuse = (1.0 - AMBIENT) * max(dot(outward, to_lamp), 0.0) * share
@@ -237,22 +241,19 @@ def plane_shadow(on_plane: NDArray[np.bool_], view: View, lamp: Lamp) -> PlaneSh
 
 
 @njit(cache=True)
-def shade_plane(where: PlaneShadow, shadow: Image, image: Image, depth_m: Image) -> None:
-    """Throw shadows on the plane z = 0; depth is unknown where the lamp does not reach.
+def plane_light(where: PlaneShadow, shadow: Image) -> Image:
+    """Return the share of the lamp that reaches the plane z = 0, 1 where it is not seen.
 
     Args:
         where: From `plane_shadow`.
         shadow: Depth of what the lamp's light meets first [m].
-        image: Brightness without shadows; is darkened.
-        depth_m: Distance along the view; is set to NaN in shadows.
     """
-    height, width = image.shape
+    height, width = where.row.shape
+    light = np.ones((height, width), np.float32)
     for v in range(height):
         for u in range(width):
-            row, column = where.row[v, u], where.column[v, u]
+            row = where.row[v, u]
             if row >= 0:
-                share = _free_share(shadow, row, column, where.depth[v, u])
-                if share < 1.0:
-                    image[v, u] *= AMBIENT + (1.0 - AMBIENT) * share
-                if share < 0.5:
-                    depth_m[v, u] = np.nan
+                depth = where.depth[v, u] - _PILE_BIAS_M
+                light[v, u] = _free_share(shadow, row, where.column[v, u], depth)
+    return light
