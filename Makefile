@@ -12,7 +12,7 @@ export OPENBLAS_NUM_THREADS ?= 1
 export MKL_NUM_THREADS ?= 1
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test check fmt fmt-check lint types layers docs skills-page freeze clean
+.PHONY: help setup demo test check fmt fmt-check lint types layers docs pages freeze clean
 
 help: ## List these words
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "  make %-12s %s\n", $$1, $$2}' $(firstword $(MAKEFILE_LIST))
@@ -75,6 +75,10 @@ layers: setup ## Check who may import whom
 
 docs: setup ## Build the documentation into site/; a warning is an error
 	$(BIN)/sphinx-build --quiet --fail-on-warning --keep-going -j auto docs site
+
+pages: setup ## Write the generated pages of docs/ anew
+	$(BIN)/python docs/skills_page.py > docs/skills.new
+	@mv docs/skills.new docs/skills.md
 
 freeze: setup ## Write the installed versions to constraints.txt
 	@{ sed '/^#/!d' constraints.txt; \

@@ -1,7 +1,10 @@
-"""The documentation against what is there: links, make words, modules."""
+"""The documentation against what is there: links, commands, generated pages."""
 
 import importlib.util
+import os
 import re
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -58,3 +61,34 @@ def test_make_words_exist(page):
 def test_modules_to_run_exist(page):
     named = [found for line in commands(page) for found in re.findall(r"python -m ([\w.]+)", line)]
     assert [name for name in named if importlib.util.find_spec(name) is None] == []
+
+
+def test_generated_pages_are_current():
+    page = subprocess.run(
+        [sys.executable, "docs/skills_page.py"],
+        cwd=ROOT, capture_output=True, text=True, check=True,
+    ).stdout  # fmt: skip
+    assert (ROOT / "docs/skills.md").read_text(encoding="utf-8") == page, "say: make pages"
+
+
+def options_of(*command: str) -> set[str]:
+    """Return the options that a command of `cellwright` lists in its help."""
+    cellwright = Path(sys.executable).with_name("cellwright")
+    wide = {**os.environ, "COLUMNS": "200"}
+    shown = subprocess.run(
+        [cellwright, *command, "--help"], capture_output=True, text=True, check=False, env=wide
+    )
+    assert shown.returncode == 0, f"cellwright {' '.join(command)}: no such command"
+    return set(re.findall(r"--[a-z-]+", shown.stdout))
+
+
+def test_commands_and_their_options_exist():
+    spoken: dict[tuple[str, ...], set[str]] = {}
+    for line in (line for page in PAGES for line in commands(page)):
+        found = re.match(r"(?:\S*/)?cellwright ((?:tree |perceive )?[a-z]+)\b(.*)", line)
+        if found:
+            names = tuple(found[1].split())
+            spoken.setdefault(names, set()).update(re.findall(r"--[a-z-]+", found[2]))
+    assert spoken
+    unknown = {names: used - options_of(*names) for names, used in spoken.items()}
+    assert {names: used for names, used in unknown.items() if used} == {}
