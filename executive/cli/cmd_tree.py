@@ -23,16 +23,16 @@ _SHAPES = {"skill": "box, style=rounded", "when": "ellipse", "set": "note"}
 def show(file: _TreeName) -> None:
     """Print a tree with its subtrees put in, its ports and what every node is wired to."""
     program = _load(file)
-    console = Console(highlight=False)
-    console.print(Text("\n".join(_header(program))), soft_wrap=True)
+    # Wide enough for any wiring: a line that is cut short would hide the end of it.
+    console = Console(highlight=False, width=1000)
+    console.print(Text("\n".join(_header(program))))
     root = expand(program)
     drawn = Tree(_line(root))
     open_nodes = [(root, drawn)]
     while open_nodes:
         node, branch = open_nodes.pop()
         open_nodes += [(child, branch.add(_line(child))) for child in node.children]
-    # Wide enough for any wiring: a line that is cut short would hide the end of it.
-    console.print(drawn, width=1000, crop=False, no_wrap=True, overflow="ignore")
+    console.print(drawn)
 
 
 @tree.command()

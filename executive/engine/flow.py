@@ -79,12 +79,14 @@ class _Flow:
     def walk(self, node: NodeSpec, known: Keys, rounds: _Rounds) -> tuple[Keys, Keys]:
         """Return the keys that may be written after a success, and after a failure."""
         wiring = self._wirings[node]
+        ends = frozenset(gives.key for gives in wiring.ends)
+        if node.model.unless is not None:
+            rounds = rounds.uncertain()
+        known = self._read(wiring, known, rounds)
         if isinstance(node.model, _LOOPS):
             rounds = rounds.entered(self._counts(node))
-        if node.model.unless is not None or isinstance(node.model, _SKIPPING):
+        if isinstance(node.model, _SKIPPING):
             rounds = rounds.uncertain()
-        ends = frozenset(gives.key for gives in wiring.ends)
-        known = self._read(wiring, known, rounds)
         inside = known | ends if isinstance(node.model, ForEachBody) else known
         success, failure = self._children(node, inside, rounds)
         return success | ends.union(gives.key for gives in wiring.gives), failure | ends

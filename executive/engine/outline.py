@@ -32,7 +32,6 @@ class NodeSpec:
         name: Name, the same for no two siblings.
         path: Names from the root of its tree down to it.
         at: Where its keys stand in the document.
-        start: Where it stands itself, or its kind if its keys stand under that.
         children: Its children, in order.
         source: The file.
     """
@@ -41,7 +40,6 @@ class NodeSpec:
     name: str
     path: str
     at: YamlPath
-    start: YamlPath
     children: tuple["NodeSpec", ...]
     source: Source
 
@@ -53,8 +51,10 @@ class NodeSpec:
 
     @property
     def mark(self) -> tuple[int, int]:
-        """Line and column, counted from 1."""
-        return self.source.key_mark(self.start)
+        """Line and column of the word that says its kind, or of the brace around it."""
+        if self.model.kind in BLOCKS:
+            return self.source.key_mark(self.at)
+        return self.source.value_mark(self.at)
 
     def fault(self, message: str, *keys: str | int) -> Fault:
         """Return a fault at one of its keys, or at the node itself."""
@@ -106,7 +106,7 @@ def _spec(
     children = tuple(
         _spec(child, place, source, paths) for child, place in zip(models, places, strict=True)
     )
-    return NodeSpec(model, path.rpartition("/")[2], path, body, body, children, source)
+    return NodeSpec(model, path.rpartition("/")[2], path, body, children, source)
 
 
 def node_paths(data: object) -> dict[YamlPath, str]:

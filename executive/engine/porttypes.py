@@ -121,8 +121,8 @@ def accepts(target: Any, source: Any) -> bool:
         return any(accepts(member, source) for member in members)
     if Literal in (typing.get_origin(target), typing.get_origin(source)):
         return _literal_accepts(target, source)
-    if is_sequence(target) and is_sequence(source):
-        return _sequence_accepts(target, source)
+    if is_sequence(target):
+        return is_sequence(source) and _sequence_accepts(target, source)
     return _class_accepts(_class(target), _class(source))
 
 

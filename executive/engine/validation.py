@@ -35,7 +35,7 @@ _EXPECTED: Final[Mapping[str, str]] = {
     "model_type": "a mapping",
     "string_too_short": "some text",
     "string_type": "text",
-    "too_short": "at least {min_length}",
+    "too_short": "at least {min_length} of them",
     "tuple_type": "a list",
 }
 _NAME: Final = "a name of lower-case letters, digits and _"
@@ -105,22 +105,25 @@ def _translate(source: Source, model: type[Document], error: ValidationError) ->
 
 def _misfit(source: Source, path: YamlPath, is_key: bool, expected: list[str]) -> Fault:
     value = path[-1] if is_key else value_at(source.data, path)
-    shown = repr(value) if isinstance(value, (str, int, float, bool)) else _what(value)
-    wanted = ", or ".join(dict.fromkeys(expected))
+    wanted = ", or ".join(dict.fromkeys(expected)).replace("True", "true").replace("False", "false")
     name = f"{path[-1]}: " if path and not is_key else ""
-    return _fault(source, path, f"{name}expected {wanted}; got {shown}", at_key=is_key)
+    return _fault(source, path, f"{name}expected {wanted}; got {_shown(value)}", at_key=is_key)
 
 
-def _what(value: object) -> str:
-    if value is None:
-        return "nothing"
-    return "a mapping" if isinstance(value, dict) else f"a list of {len(value)}"  # type: ignore[arg-type]  # YAML has no more
+def _shown(value: object) -> str:
+    """Return a value as a message shows it: in the words of YAML, and not at length."""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, (str, int, float)):
+        return repr(value)
+    if isinstance(value, list):
+        return f"a list of {len(value)}"
+    return "a mapping" if isinstance(value, dict) else "nothing"
 
 
 def _no_node(value: object) -> str:
     if not isinstance(value, dict):
-        shown = repr(value) if isinstance(value, (str, int, float)) else _what(value)
-        return f"expected a node such as {{skill: NAME}}; got {shown}"
+        return f"expected a node such as {{skill: NAME}}; got {_shown(value)}"
     kinds = [key for key in value if key in KINDS]
     if kinds:
         return f"a node has one kind; got {' and '.join(kinds)}, try one list entry for each"

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
 from textwrap import dedent, indent
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 from executive.core.clock import ManualClock
 from executive.core.errors import DocumentError
@@ -42,7 +42,7 @@ class Journal:
 class Find(Skill):
     """Find a part."""
 
-    OUT = {"part": Port(Part, "what was found"), "distance": Port(float, unit="m")}
+    OUT: ClassVar = {"part": Port(Part, "what was found"), "distance": Port(float, unit="m")}
 
     def run(self) -> SkillRun:
         return success(part=Part(0.5, Colour.RED, (1, 2)), distance=2.0)
@@ -52,7 +52,7 @@ class Find(Skill):
 class Weigh(Skill):
     """Weigh a part."""
 
-    OUT = {"mass": Port(float, unit="kg")}
+    OUT: ClassVar = {"mass": Port(float, unit="kg")}
 
     def run(self, part: Part, factor: Annotated[float, In("scale", unit="m")] = 1.0) -> SkillRun:
         return success(mass=part.mass_kg * factor)
@@ -62,8 +62,8 @@ class Weigh(Skill):
 class Work(Skill):
     """Answer after some ticks, and note start, end and stop."""
 
-    OUT = {"label": Port(str)}
-    REASONS = frozenset({"work.failed"})
+    OUT: ClassVar = {"label": Port(str)}
+    REASONS: ClassVar = frozenset({"work.failed"})
     ACTS = True
 
     def __init__(self, journal: Journal) -> None:
@@ -88,7 +88,7 @@ class Work(Skill):
 class Liar(Skill):
     """Give something else than it declares."""
 
-    OUT = {"mass": Port(float)}
+    OUT: ClassVar = {"mass": Port(float)}
 
     def run(self) -> SkillRun:
         return success(mass="heavy")
