@@ -81,7 +81,7 @@ class PlannedDualArm:
         failures = []
         for order in orders:
             named = dict(zip(order, goals, strict=True))
-            answer = self._planner.solver.configurations(named, present, count=3)
+            answer = self._planner.solver.configurations(named, present, count=4)
             if not isinstance(answer, MotionFailure):
                 return order
             failures.append(answer)
@@ -90,8 +90,7 @@ class PlannedDualArm:
     def reachable(self, arm: Arm, goal: TcpGoal) -> bool:
         """Return whether that arm alone could reach the goal without collision."""
         present = self._note_state()
-        found = self._planner.solver.solutions(arm, goal, present, 1, alone=True)
-        return not isinstance(found, MotionFailure)
+        return self._planner.solver.reaches(arm, goal, present)
 
     def tcp_position(self, arm: Arm) -> Floats:
         """Return the present position of a tool centre point in the world [m], shape (3,)."""

@@ -28,11 +28,14 @@ class TcpGoal:
             leaves it free. The gripper is symmetric: yaw and yaw + pi are the same grasp.
         max_tilt_rad: How far the tool may lean from straight down where that is out of
             reach [rad].
+        onward_m: Straight tool motions, one after the other, that the arm must be able to make
+            from there, e.g. down onto a cable: vectors in the world [m], shape (3,) each.
     """
 
     position_m: Floats
     yaw_rad: float | None = None
     max_tilt_rad: float = 0.52
+    onward_m: tuple[Floats, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

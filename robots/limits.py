@@ -49,6 +49,11 @@ class JointLimits:
             self.jerk * scale**3,
         )
 
+    def capped(self, velocity: float) -> "JointLimits":
+        """Return the limits with no velocity above a value."""
+        slower = np.minimum(self.velocity, velocity)
+        return JointLimits(self.lower, self.upper, slower, self.acceleration, self.jerk)
+
     def along(self, slopes: Floats) -> "JointLimits":
         """Return the limits of one parameter that moves joint i by `slopes[i]` a unit.
 

@@ -1,7 +1,8 @@
 """Which poses of a tool satisfy a goal: yaw, its symmetry, and leaning where that helps."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 from math import cos, pi, sin
 
 import numpy as np
@@ -12,8 +13,6 @@ from robots.interfaces import Floats, TcpGoal
 # Yaws that are tried when a goal leaves the yaw free: eight over half a turn.
 _FREE_YAWS = tuple(pi * step / 8 for step in range(8))
 _DOWN: Floats = np.array([0.0, 0.0, -1.0])
-# Leaning sideways by more than this share is no help in reaching out.
-_LEAST_OUTWARD_SHARE = 0.3
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -39,8 +38,8 @@ def tool_poses(goal: TcpGoal, shoulder_m: Floats) -> Iterator[tuple[ToolPose, ..
     """Yield groups of poses that satisfy a goal, the straightest group first.
 
     Each pose comes with its twin, half a turn about the tool's axis, which is the same grasp.
-    Leaning is outward, the fingers ahead of the wrist, and first about the opening axis, which
-    keeps both fingertips level; last inward, for places close to the body.
+    Leaning is first about the opening axis, which keeps both fingertips level, then outward,
+    the fingers ahead of the wrist, and last inward, for places close to the body.
 
     Args:
         goal: What is asked of the tool.
@@ -49,15 +48,27 @@ def tool_poses(goal: TcpGoal, shoulder_m: Floats) -> Iterator[tuple[ToolPose, ..
     yaws = _FREE_YAWS if goal.yaw_rad is None else (goal.yaw_rad,)
     yield tuple(pose for yaw in yaws for pose in _twins(goal, pointing_down(yaw), 0.0))
     outward = _horizontal(goal.position_m - shoulder_m)
-    for share, sign in ((0.5, 1.0), (1.0, 1.0), (1.0, -1.0)):
-        tilt = share * goal.max_tilt_rad
-        if tilt > 0.0:
-            yield tuple(
-                pose
-                for yaw in yaws
-                for lean in _leans(yaw, sign * outward)
-                for pose in _twins(goal, _leant(pointing_down(yaw), lean, tilt), tilt)
-            )
+    half, full = goal.max_tilt_rad / 2, goal.max_tilt_rad
+    if full <= 0.0:
+        return
+    for tilt in (half, full):
+        yield tuple(_leaning(goal, yaws, _level_leans, tilt))
+    for tilt, towards in ((half, outward), (full, outward), (full, -outward)):
+        yield tuple(_leaning(goal, yaws, partial(_one_lean, towards), tilt))
+
+
+def _leaning(
+    goal: TcpGoal, yaws: Sequence[float], leans: Callable[[float], tuple[Floats, ...]], tilt: float
+) -> Iterator[ToolPose]:
+    for yaw in yaws:
+        for lean in leans(yaw):
+            yield from _twins(goal, _leant(pointing_down(yaw), lean, tilt), tilt)
+
+
+def _level_leans(yaw_rad: float) -> tuple[Floats, ...]:
+    """Return the two directions square to the opening."""
+    level = np.array([-sin(yaw_rad), cos(yaw_rad), 0.0])
+    return level, -level
 
 
 def _twins(goal: TcpGoal, rotation: Floats, tilt_rad: float) -> Iterator[ToolPose]:
@@ -72,14 +83,8 @@ def _horizontal(vector: Floats) -> Floats:
     return flat / length if length > 1e-6 else np.array([0.0, 1.0, 0.0])
 
 
-def _leans(yaw_rad: float, towards: Floats) -> Iterator[Floats]:
-    """Yield directions to lean to: square to the opening if that helps, then as told."""
-    level = np.array([-sin(yaw_rad), cos(yaw_rad), 0.0])
-    along = float(level @ towards)
-    if abs(along) > _LEAST_OUTWARD_SHARE:
-        yield level * np.sign(along)
-    if abs(along) < 0.99:
-        yield towards
+def _one_lean(towards: Floats, _yaw_rad: float) -> tuple[Floats, ...]:
+    return (towards,)
 
 
 def _leant(rotation: Floats, towards: Floats, tilt_rad: float) -> Floats:

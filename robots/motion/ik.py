@@ -2,7 +2,8 @@
 
 For a pose, the error e is the twist from tool to target in the tool's frame, and each step is
 dq = J^T (J J^T + mu I)^-1 e with mu proportional to |e| (Levenberg-Marquardt as in Sugihara,
-IEEE T-RO 2011), capped in length and clipped to the limits. Starts that converge need 5-10
+IEEE T-RO 2011), capped in length and clipped to the limits; joints that stand at a limit and would
+leave it are taken out of the step. Starts that converge need 5-10
 steps, so each gets a few dozen at most and then the next start is taken.
 """
 
@@ -40,13 +41,19 @@ def solve_pose(
         size = float(np.sqrt(error @ error))
         if size < TOLERANCE:
             return q
-        damped = jacobian @ jacobian.T + (_DAMPING * max(size, 1e-3)) * _IDENTITY
-        step = jacobian.T @ np.linalg.solve(damped, error)
-        largest = float(np.abs(step).max())
-        if largest > _STEP_CAP_RAD:
-            step *= _STEP_CAP_RAD / largest
+        step = _damped_step(jacobian, error, size)
+        stuck = ((q <= arm.lower) & (step < 0.0)) | ((q >= arm.upper) & (step > 0.0))
+        if stuck.any():
+            step = _damped_step(jacobian * ~stuck, error, size)
         q = np.clip(q + step, arm.lower, arm.upper)
     return None
+
+
+def _damped_step(jacobian: Floats, error: Floats, size: float) -> Floats:
+    damped = jacobian @ jacobian.T + (_DAMPING * max(size, 1e-3)) * _IDENTITY
+    step: Floats = jacobian.T @ np.linalg.solve(damped, error)
+    largest = float(np.abs(step).max())
+    return step * (_STEP_CAP_RAD / largest) if largest > _STEP_CAP_RAD else step
 
 
 @dataclass(frozen=True, slots=True, eq=False)

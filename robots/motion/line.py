@@ -1,134 +1,153 @@
-"""Straight tool motions of one or both arms, in step, with the orientation of the tools kept."""
+"""Straight tool motions of one or both arms, in step, with the orientation of the tools kept.
 
-from collections.abc import Mapping
+An arm of seven joints can follow a line in many ways, since its elbow is free to swing. A line
+is followed with the elbow as it comes, pushed away from joint limits; where that ends at a
+limit or in a collision, variants with a steady swing to either side are tried.
+"""
+
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from functools import partial
+from itertools import product
 from math import ceil
 
 import numpy as np
 import pinocchio as pin
-import ruckig
-from scipy.interpolate import CubicSpline
 
 from robots.interfaces import Arm, Floats
-from robots.limits import JointLimits
 from robots.motion.ik import solve_pose
-from robots.motion.model import RobotModel
-from robots.motion.timing import JointState, Piece, connect
+from robots.motion.model import SINGULAR_ZONE, ArmKinematics, RobotModel
 
 SAMPLE_SPACING_M = 0.005
+_LEAST_SAMPLES = 4
+_SWINGS_RAD = (0.02, -0.02, 0.05, -0.05)  # of the elbow's free motion, a sample
 _LARGEST_STEP_RAD = 0.25  # between samples; more means that the arm jumps to another branch
-_RATE_CHECK_S = 0.002
+_LIMIT_ZONE_RAD = 0.35
+_LARGEST_PUSH_RAD = 0.05
+_PROBE_RAD = 0.02
 
 
-@dataclass(frozen=True, slots=True)
-class LineStop:
-    """Where a line cannot go on: the arm, and the fraction of the line that is possible."""
+@dataclass(frozen=True, slots=True, eq=False)
+class ArmLine:
+    """How one arm follows a line.
 
-    arm: Arm
-    fraction: float
+    Attributes:
+        samples_rad: Configurations from the start on, shape (k, 7), equally spaced on the line.
+        complete: Whether the last sample is the line's end.
+    """
+
+    samples_rad: Floats
+    complete: bool
+
+
+def line_steps(*displacements_m: Floats) -> int:
+    """Return into how many steps lines that are followed in step are cut."""
+    longest = max(float(np.linalg.norm(displacement)) for displacement in displacements_m)
+    return max(_LEAST_SAMPLES, ceil(longest / SAMPLE_SPACING_M))
 
 
 def follow_line(
-    robot: RobotModel, start_rad: Floats, displacements_m: Mapping[Arm, Floats]
-) -> Floats | LineStop:
-    """Return configurations of all arms along straight lines of their tools, shape (k, n).
+    arm: ArmKinematics,
+    start_rad: Floats,
+    displacement_m: Floats,
+    count: int,
+    swing_rad: float = 0.0,
+) -> ArmLine:
+    """Follow a straight line of the tool as far as it goes.
 
-    Samples are equally spaced in the fraction of the line, from the start to its end.
+    Args:
+        arm: Kinematics of the arm.
+        start_rad: Joint positions at the line's beginning, shape (7,).
+        displacement_m: Vector of the tool in the world [m], shape (3,).
+        count: Steps to cut the line into.
+        swing_rad: Motion of the elbow that is added at each step [rad].
+    """
+    q = start_rad
+    samples = [q]
+    T_start = arm.tcp_pose(q)
+    free: Floats | None = None
+    for number in range(1, count + 1):
+        way = T_start.translation + displacement_m * (number / count)
+        free = _free_direction(arm, q, free)
+        swing = swing_rad + _push(arm, q, free)
+        swung = np.clip(q + swing * free, arm.lower, arm.upper)
+        following = solve_pose(arm, pin.SE3(T_start.rotation, way), swung)
+        if following is None or np.abs(following - q).max() > _LARGEST_STEP_RAD:
+            return ArmLine(np.array(samples), complete=False)
+        samples.append(following)
+        q = following
+    return ArmLine(np.array(samples), complete=True)
+
+
+def line_variants(
+    robot: RobotModel, start_rad: Floats, displacements_m: Mapping[Arm, Floats]
+) -> Iterator[dict[Arm, ArmLine]]:
+    """Yield ways in which arms can follow their lines, the most promising first.
 
     Args:
         robot: The robot.
         start_rad: Present configuration of all arms, shape (n,).
         displacements_m: Vector of each moving tool in the world [m], shape (3,).
     """
-    longest = max(float(np.linalg.norm(d)) for d in displacements_m.values())
-    count = max(4, ceil(longest / SAMPLE_SPACING_M))
-    samples = np.tile(start_rad, (count + 1, 1))
+    count = line_steps(*displacements_m.values())
+    starts = {arm: start_rad[robot.joints_of(arm)] for arm in displacements_m}
+    plain = {
+        arm: follow_line(robot.kinematics[arm], starts[arm], displacement, count)
+        for arm, displacement in displacements_m.items()
+    }
+    if all(_promise(robot.kinematics[arm], line) >= 1.0 for arm, line in plain.items()):
+        yield plain
+    ranked = {}
     for arm, displacement in displacements_m.items():
-        joints = robot.joints_of(arm)
         kinematics = robot.kinematics[arm]
-        q = start_rad[joints]
-        T_start = kinematics.tcp_pose(q)
-        for number in range(1, count + 1):
-            fraction = number / count
-            target = pin.SE3(T_start.rotation, T_start.translation + fraction * displacement)
-            following = solve_pose(kinematics, target, q)
-            if following is None or np.abs(following - q).max() > _LARGEST_STEP_RAD:
-                return LineStop(arm, (number - 1) / count)
-            samples[number, joints] = q = following
+        swung = (
+            follow_line(kinematics, starts[arm], displacement, count, swing)
+            for swing in _SWINGS_RAD
+        )
+        lines = [plain[arm], *swung]
+        ranked[arm] = sorted(lines, key=partial(_promise, kinematics), reverse=True)
+    choices = product(*(enumerate(lines) for lines in ranked.values()))
+    for choice in sorted(choices, key=lambda choice: sum(rank for rank, _ in choice)):
+        yield {arm: line for arm, (_, line) in zip(ranked, choice, strict=True)}
+
+
+def _promise(arm: ArmKinematics, line: ArmLine) -> float:
+    """Return 1 for a complete line with a comfortable end; below 0 for one that is cut short."""
+    if not line.complete:
+        return -1.0 / len(line.samples_rad)
+    return round(comfort(arm, line.samples_rad[-1]), 1)
+
+
+def comfort(arm: ArmKinematics, q: Floats) -> float:
+    """Return 1 for a configuration away from limits and singularities, down to 0 at one."""
+    room = float(np.minimum(q - arm.lower, arm.upper - q).min())
+    return min(1.0, max(0.0, room) / _LIMIT_ZONE_RAD, arm.dexterity(q) / SINGULAR_ZONE)
+
+
+def together(robot: RobotModel, start_rad: Floats, lines: Mapping[Arm, ArmLine]) -> Floats:
+    """Return configurations of all arms while some follow complete lines, shape (k, n)."""
+    count = len(next(iter(lines.values())).samples_rad)
+    samples: Floats = np.tile(start_rad, (count, 1))
+    for arm, line in lines.items():
+        samples[:, robot.joints_of(arm)] = line.samples_rad
     return samples
 
 
-class LineTrajectory:
-    """A curve through configurations q(s), s in [0, 1], driven by a jerk-limited s(t)."""
-
-    def __init__(self, samples: Floats, profile: Piece) -> None:
-        """Take equally spaced configurations, shape (k, n), and a motion of s from 0 to 1."""
-        self._curve = CubicSpline(np.linspace(0.0, 1.0, len(samples)), samples)
-        self._velocity = self._curve.derivative(1)
-        self._acceleration = self._curve.derivative(2)
-        self._jerk = self._curve.derivative(3)
-        self._profile = profile
-
-    @property
-    def duration_s(self) -> float:
-        """Length in time [s]."""
-        return self._profile.duration_s
-
-    def at(self, time_s: float) -> JointState:
-        """Return position, velocity and acceleration; outside, the first or last state."""
-        state = self._profile.at(min(max(time_s, 0.0), self.duration_s))
-        s, v, a = (float(value[0]) for value in state)
-        slope = self._velocity(s)
-        return self._curve(s), slope * v, self._acceleration(s) * v * v + slope * a
-
-    def excess(self, limits: JointLimits) -> float:
-        """Return by what factor the motion would have to be slowed down to keep limits.
-
-        Below 1 it could run faster. Slowing by f divides velocity by f, acceleration by
-        f squared and jerk by f cubed.
-        """
-        times = np.linspace(0.0, self.duration_s, ceil(self.duration_s / _RATE_CHECK_S) + 2)
-        states = [self._profile.at(t) for t in times]
-        s, v, a = (np.array([state[k][0] for state in states])[:, None] for k in range(3))
-        j = np.gradient(a[:, 0], times)[:, None]
-        first, second, third = (
-            curve(s[:, 0]) for curve in (self._velocity, self._acceleration, self._jerk)
-        )
-        velocity = first * v
-        acceleration = second * v**2 + first * a
-        jerk = third * v**3 + 3 * second * v * a + first * j
-        return max(
-            float(np.max(np.abs(velocity) / limits.velocity)),
-            float(np.max(np.abs(acceleration) / limits.acceleration)) ** (1 / 2),
-            float(np.max(np.abs(jerk) / limits.jerk)) ** (1 / 3),
-        )
+def _free_direction(arm: ArmKinematics, q: Floats, previous: Floats | None) -> Floats:
+    """Return the unit joint motion that leaves the tool where it is, signed as before."""
+    free: Floats = np.linalg.svd(arm.tcp_jacobian(q)[1])[2][-1]
+    lead = free[int(np.argmax(np.abs(free)))] if previous is None else free @ previous
+    return free if lead >= 0.0 else -free
 
 
-def time_line(
-    samples: Floats, limits: JointLimits, fraction_speed_1_s: float
-) -> LineTrajectory | None:
-    """Return the motion along sampled configurations, as fast as limits allow.
-
-    Args:
-        samples: Equally spaced configurations, shape (k, n).
-        limits: Limits of the joints.
-        fraction_speed_1_s: Largest rate of the fraction s, from the tool's speed limit [1/s].
-    """
-    curve = CubicSpline(np.linspace(0.0, 1.0, len(samples)), samples)
-    slopes = np.abs(curve.derivative(1)(np.linspace(0.0, 1.0, 2 * len(samples)))).max(axis=0)
-    rate = limits.along(slopes)
-    rate.velocity[0] = min(rate.velocity[0], fraction_speed_1_s)
-    profile = _profile(rate)
-    if profile is None:
-        return None
-    line = LineTrajectory(samples, profile)
-    slower = line.excess(limits) * 1.001
-    if slower <= 1.0:
-        return line
-    profile = _profile(rate.slowed(1.0 / slower))
-    return LineTrajectory(samples, profile) if profile else None
-
-
-def _profile(rate: JointLimits) -> Piece | None:
-    zero: Floats = np.zeros(1)
-    return connect((zero, zero, zero), (np.ones(1), zero, zero), rate, ruckig.Synchronization.Time)
+def _push(arm: ArmKinematics, q: Floats, free: Floats) -> float:
+    """Return how far to swing along the free direction, away from limits and singularities."""
+    near_lower = np.clip(1.0 - (q - arm.lower) / _LIMIT_ZONE_RAD, 0.0, 1.0)
+    near_upper = np.clip(1.0 - (arm.upper - q) / _LIMIT_ZONE_RAD, 0.0, 1.0)
+    from_limits = float(free @ (near_lower - near_upper))
+    dexterity = arm.dexterity(q)
+    if dexterity >= SINGULAR_ZONE:
+        return _LARGEST_PUSH_RAD * from_limits
+    slope = arm.dexterity(q + _PROBE_RAD * free) - arm.dexterity(q - _PROBE_RAD * free)
+    away = float(np.sign(slope)) * (1.0 - dexterity / SINGULAR_ZONE)
+    return _LARGEST_PUSH_RAD * (from_limits + away)

@@ -44,6 +44,10 @@ class ArmSpec:
     reach_m: float
 
 
+# Dexterity below which small motions of the tool begin to ask for large ones of the joints.
+SINGULAR_ZONE = 0.1
+
+
 class ArmKinematics:
     """Forward kinematics and Jacobian of one arm, everything else of the robot locked."""
 
@@ -72,6 +76,10 @@ class ArmKinematics:
         T_world_tcp = pin.updateFramePlacement(self.model, self._data, self._tcp)
         jacobian = pin.getFrameJacobian(self.model, self._data, self._tcp, pin.ReferenceFrame.LOCAL)
         return T_world_tcp, jacobian
+
+    def dexterity(self, positions_rad: Floats) -> float:
+        """Return the smallest singular value of the tool's Jacobian; 0 is a singularity."""
+        return float(np.linalg.svd(self.tcp_jacobian(positions_rad)[1], compute_uv=False)[-1])
 
 
 class RobotModel:

@@ -9,7 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from robots.interfaces import Arm, Floats, MotionFailure, TcpGoal, Trajectory
-from robots.motion.line import LineStop, follow_line, time_line
+from robots.motion.line import ArmLine, line_steps, line_variants, together
+from robots.motion.line_timing import time_curve
 from robots.motion.model import RobotModel
 from robots.motion.path import PathSearch, Space
 from robots.motion.solver import GoalSolver
@@ -90,20 +91,33 @@ class MotionPlanner:
     ) -> Trajectory | MotionFailure:
         """Plan straight tool motions in step, orientation kept."""
         self.solver.together.excuse(start_rad)
-        samples = follow_line(self.robot, start_rad, displacements_m)
-        if isinstance(samples, LineStop):
-            length = float(np.linalg.norm(displacements_m[samples.arm]))
-            text = (
-                f"{samples.arm} arm: only {samples.fraction * length:.3f} m of the"
-                f" {length:.3f} m line is within the joint limits"
-            )
-            return MotionFailure("motion.unreachable", "line", text)
-        longest = max(float(np.linalg.norm(d)) for d in displacements_m.values())
-        rate = self.settings.line_speed_m_s / max(longest, 1e-9)
-        trajectory = time_line(samples, self.limits, rate)
-        if trajectory is None:
-            return _untimed("line")
-        return self._checked(trajectory)
+        failures = []
+        for lines in line_variants(self.robot, start_rad, displacements_m):
+            answer = self._line(start_rad, displacements_m, lines)
+            if not isinstance(answer, MotionFailure):
+                return answer
+            failures.append(answer)
+        return failures[0]
+
+    def _line(
+        self,
+        start: Floats,
+        displacements_m: Mapping[Arm, Floats],
+        lines: Mapping[Arm, ArmLine],
+    ) -> Trajectory | MotionFailure:
+        for arm, line in lines.items():
+            if not line.complete:
+                return _cut_short(arm, displacements_m, line)
+        samples = together(self.robot, start, lines)
+        hit = next((q for q in samples if self.solver.together.collides(q)), None)
+        if hit is not None:
+            pair = self.solver.together.colliding_pair(hit)
+            text = f"on the line, {' and '.join(pair or ('two', 'bodies'))} collide"
+            return MotionFailure("motion.collision", "line", text, pair)
+        longest_m = max(float(np.linalg.norm(d)) for d in displacements_m.values())
+        rate_1_s = self.settings.line_speed_m_s / max(longest_m, 1e-9)
+        trajectory = time_curve(samples, self.limits, rate_1_s)
+        return _untimed("line") if trajectory is None else self._checked(trajectory)
 
     def _to_any(
         self, start: Floats, ends: Sequence[Floats], arms: Sequence[Arm]
@@ -154,6 +168,16 @@ class MotionPlanner:
             f" within {self.settings.path_checks} collision checks each"
         )
         return MotionFailure("motion.no_path", "path", text)
+
+
+def _cut_short(arm: Arm, displacements_m: Mapping[Arm, Floats], line: ArmLine) -> MotionFailure:
+    length_m = float(np.linalg.norm(displacements_m[arm]))
+    possible_m = length_m * (len(line.samples_rad) - 1) / line_steps(*displacements_m.values())
+    text = (
+        f"{arm} arm: only {possible_m:.3f} m of the {length_m:.3f} m line is within the joint"
+        " limits"
+    )
+    return MotionFailure("motion.unreachable", "line", text)
 
 
 def _untimed(stage: str) -> MotionFailure:

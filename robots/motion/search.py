@@ -1,0 +1,143 @@
+"""The search for joint positions of one arm that satisfy a goal, with a record of what failed."""
+
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+
+from robots.interfaces import Arm, Floats, MotionFailure, TcpGoal
+from robots.motion.collision import CollisionModel
+from robots.motion.grasp import ToolPose, tool_poses
+from robots.motion.ik import solve_pose
+from robots.motion.line import comfort, follow_line, line_steps
+from robots.motion.model import RobotModel
+
+_DISTINCT_RAD = 0.1
+_TILT_COST = 0.8  # of leaning by a radian, in seconds of motion
+_DISCOMFORT_COST = 2.0  # of standing at a joint limit or singularity, in seconds of motion
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Solution:
+    """Joint positions of one arm that satisfy a goal.
+
+    Attributes:
+        positions_rad: Shape (7,).
+        cost: Roughly the seconds to get there, plus penalties for leaning and discomfort.
+    """
+
+    positions_rad: Floats
+    cost: float
+
+
+class GoalSearch:
+    """Collects distinct, collision-free solutions of one arm, and what became of the others."""
+
+    def __init__(
+        self,
+        robot: RobotModel,
+        arm: Arm,
+        goal: TcpGoal,
+        present_rad: Floats,
+        checker: CollisionModel,
+    ) -> None:
+        """Take a goal of an arm, and the present configuration of all arms."""
+        self._name = arm
+        self._arm = robot.kinematics[arm]
+        self._joints = robot.joints_of(arm)
+        self._speeds = robot.limits.velocity[self._joints]
+        self._goal = goal
+        shoulder_m = self._arm.shoulder_m
+        within = np.linalg.norm(goal.position_m - shoulder_m) <= robot.specs[arm].reach_m
+        self._poses = tool_poses(goal, shoulder_m) if within else iter(())
+        self._present = present_rad
+        self._checker = checker
+        self._seen: list[Floats] = []
+        self._found: list[Solution] = []
+        self._pairs: Counter[tuple[str, str]] = Counter()
+        self._cut_short = 0
+
+    def found(self) -> list[Solution]:
+        """Return the solutions so far, the cheapest first."""
+        return sorted(self._found, key=lambda solution: solution.cost)
+
+    def widen(self, starts: Sequence[Floats], count: int) -> bool:
+        """Look among the next poses, those that lean a little more; False when none are left.
+
+        Args:
+            starts: Joint positions to descend from, shape (7,) each.
+            count: Solutions to look for among these poses.
+        """
+        poses = next(self._poses, None)
+        if poses is None:
+            return False
+        self._try(product(starts, poses), len(self._found) + count)
+        return True
+
+    def failure(self) -> MotionFailure:
+        """Return why nothing was found."""
+        if self._pairs and self._pairs.total() >= self._cut_short:
+            pair, hits = self._pairs.most_common(1)[0]
+            text = f"all {self._pairs.total()} ways collide, {hits} of them {' and '.join(pair)}"
+            return self._failure("motion.collision", text, pair)
+        if self._cut_short:
+            return self._failure("motion.unreachable", "the straight motions onward do not fit")
+        yaw = self._goal.yaw_rad
+        turned = "any yaw" if yaw is None else f"yaw {yaw:.2f} rad"
+        text = f"out of reach with {turned} and up to {self._goal.max_tilt_rad:.2f} rad of tilt"
+        return self._failure("motion.unreachable", text)
+
+    def _failure(self, code: str, text: str, pair: tuple[str, str] | None = None) -> MotionFailure:
+        return MotionFailure(code, "ik", f"{self._name} arm to {place(self._goal)}: {text}", pair)
+
+    def _try(self, attempts: Iterator[tuple[Floats, ToolPose]], enough: int) -> None:
+        for start, pose in attempts:
+            q = solve_pose(self._arm, pose.T_world_tcp, start)
+            if q is not None and self._is_new(q):
+                self._seen.append(q)
+                self._judge(q, pose.tilt_rad)
+                if len(self._found) >= enough:
+                    return
+
+    def _is_new(self, q: Floats) -> bool:
+        return all(np.abs(q - other).max() > _DISTINCT_RAD for other in self._seen)
+
+    def _judge(self, q: Floats, tilt_rad: float) -> None:
+        if self._is_free(q) and self._can_go_on(q):
+            self._found.append(Solution(q, self._cost(q, tilt_rad)))
+
+    def _is_free(self, q: Floats) -> bool:
+        whole = self._present.copy()
+        whole[self._joints] = q
+        if not self._checker.collides(whole):
+            return True
+        pair = self._checker.colliding_pair(whole)
+        if pair is not None:
+            self._pairs[pair] += 1
+        return False
+
+    def _can_go_on(self, q: Floats) -> bool:
+        """Return whether the goal's onward lines are possible from a solution."""
+        for displacement in self._goal.onward_m:
+            line = follow_line(self._arm, q, displacement, line_steps(displacement))
+            if not line.complete:
+                self._cut_short += 1
+                return False
+            if not all(self._is_free(sample) for sample in line.samples_rad[1:]):
+                return False
+            q = line.samples_rad[-1]
+        return True
+
+    def _cost(self, q: Floats, tilt_rad: float) -> float:
+        times = np.abs(q - self._present[self._joints]) / self._speeds
+        travel = float(times.max() + 0.2 * times.sum())
+        discomfort = 1.0 - comfort(self._arm, q)
+        return travel + _DISCOMFORT_COST * discomfort + _TILT_COST * tilt_rad
+
+
+def place(goal: TcpGoal) -> str:
+    """Return a goal's position for a message."""
+    x, y, z = goal.position_m
+    return f"({x:.3f}, {y:.3f}, {z:.3f}) m"
