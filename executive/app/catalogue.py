@@ -27,8 +27,10 @@ from skills.cable.find_knots import FindKnots
 from skills.cable.find_start_points import FindStartPoints
 from skills.cable.observe_workspace import ObserveWorkspace
 from skills.cable.perturb_endpoint import PerturbEndpoint
+from skills.cable.perturb_trace import PerturbTrace
 from skills.cable.pull_in import PullIn
 from skills.cable.state_claim import StateClaim
+from skills.cable.stir_cable import StirCable
 from skills.cable.trace_cable import TraceCable
 from skills.motion.go_home import GoHome
 
@@ -41,8 +43,10 @@ _SKILLS: dict[str, type[Skill]] = {
     "go_home": GoHome,
     "observe_workspace": ObserveWorkspace,
     "perturb_endpoint": PerturbEndpoint,
+    "perturb_trace": PerturbTrace,
     "pull_in": PullIn,
     "state_claim": StateClaim,
+    "stir_cable": StirCable,
     "trace_cable": TraceCable,
 }
 

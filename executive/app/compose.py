@@ -32,6 +32,9 @@ class _EquippedCell:
     def stop(self) -> None:
         self._world.stop()
 
+    def emergency_stop(self) -> None:
+        self._world.emergency_stop()
+
     def close(self) -> None:
         self._world.close()
 

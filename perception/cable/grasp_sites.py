@@ -13,7 +13,7 @@ import numpy as np
 
 from perception.cable.types import Crossing, Knot, Points, Trace
 
-STRIDE_PX = 10.0
+STRIDE_PX = 16.0
 # A finger stands beside the cable by half the opening and is about 12 mm thick.
 SIDE_ROOM_PX = 40.0
 ALONG_ROOM_PX = 10.0

@@ -3,6 +3,9 @@
 from collections.abc import Sequence
 from typing import Protocol, runtime_checkable
 
+import numpy as np
+from numpy.typing import NDArray
+
 from perception.cable.types import (
     CableScene,
     Crossing,
@@ -50,6 +53,17 @@ class CrossingClassifier(Protocol):
 @runtime_checkable
 class CableVision(Protocol):
     """The whole of cable perception as the skills of a tree use it, step by step."""
+
+    def cable_pixels(self, image: GreyImage) -> NDArray[np.bool_]:
+        """Say which pixels show cable or connector, shape (height, width)."""
+        ...
+
+    def pieces(self, image: GreyImage) -> tuple[Points, ...]:
+        """Return unbranched pieces of centre line, longest first, shape (N, 2) each.
+
+        They need no start and no end, so they are what is left to hold when tracing fails.
+        """
+        ...
 
     def endpoints(self, image: GreyImage) -> tuple[Endpoint, ...]:
         """Find the ends of cables."""

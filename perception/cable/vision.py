@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from perception.cable.belief import knotted_probability
 from perception.cable.classifiers.continuity import ContinuityClassifier
@@ -58,6 +59,20 @@ class ClassicCableVision:
         self._tracer = TRACERS[self._config.tracer]()
         self._classifier = CLASSIFIERS[self._config.classifier]()
         self._starter = AnalyticTracer()
+
+    def cable_pixels(self, image: GreyImage) -> NDArray[np.bool_]:
+        """Say which pixels show cable or connector, shape (height, width)."""
+        observation = observe(image)
+        if observation is None:
+            return np.zeros(image.shape, dtype=bool)
+        return observation.mask.cable
+
+    def pieces(self, image: GreyImage) -> tuple[Points, ...]:
+        """Return unbranched pieces of centre line, longest first, shape (N, 2) each."""
+        observation = observe(image)
+        edges = observation.graph.edges if observation is not None else ()
+        ordered = sorted(edges, key=lambda edge: -edge.length_px)
+        return tuple(edge.points_px for edge in ordered)
 
     def endpoints(self, image: GreyImage) -> tuple[Endpoint, ...]:
         """Find the ends of cables, the surest first."""

@@ -12,7 +12,15 @@ from perception.cable.types import Crossing, Knot, Trace
 from perception.camera import CameraFrame
 from robots.interfaces import Arm, DualArm, Floats, MotionFailure, TcpGoal
 from skills.cable.grasping import CLEARANCE_M, grasp_goal
-from skills.motion.steps import MOTION_REASONS, MotionSteps, descend, move_by, release, set_grips
+from skills.motion.steps import (
+    MOTION_REASONS,
+    MotionSteps,
+    above,
+    descend,
+    move_by,
+    release,
+    set_grips,
+)
 
 # Two grippers that point straight down touch each other when they are nearer than this.
 HANDS_APART_M = 0.11
@@ -32,12 +40,12 @@ class DilateKnot(Skill):
     while the pinch keeps other knots in series from running together.
 
     SUCCESS: both hands held the cable, moved apart and laid it down.
-    FAILURE: `knot.none` when there is no knot to dilate; `grasp.unreachable` when no pair of
-        sites suits both arms; `grasp.missed` when a hand closed on nothing; a motion reason.
+    FAILURE: `knot.none` when there is no knot to dilate; a motion reason when no pair of
+        sites suits both arms; `grasp.missed` when a hand closed on nothing.
     stop(): arms come to rest; a held cable stays held.
     """
 
-    REASONS = MOTION_REASONS | {"knot.none", "grasp.unreachable", "grasp.missed"}
+    REASONS = MOTION_REASONS | {"knot.none", "grasp.missed"}
     ACTS = True
 
     def __init__(self, arms: DualArm) -> None:
@@ -52,20 +60,15 @@ class DilateKnot(Skill):
         knots: Annotated[tuple[Knot, ...], In("knots of the trace")],
         separation_m: Annotated[float, In("how far apart the hands end", "m")] = 0.6,
     ) -> SkillRun:
-        """Choose a pair of grasps, take hold, lift, pull apart, lay down, rise."""
+        """Take hold with both hands, lift, pull apart, lay down, rise."""
         if not knots:
             return failure("knot.none", "no knot was found to dilate")
-        pair = yield from self._choose_pair(frame, trace, crossings, knots[0])
-        if pair is None:
-            return failure("grasp.unreachable", "no cage and pinch sites suit both arms at once")
-        hands, goals = pair
-        failed = yield from descend(self._arms, goals, CLEARANCE_M)
-        missed: list[Arm] = []
-        if failed is None:
-            yield from set_grips(self._arms, {hands[0]: "cage", hands[1]: "pinch"})
-            missed = [arm for arm in hands if not self._arms.holds(arm)]
-            if not missed:
-                failed = yield from self._pull_apart(hands, separation_m)
+        hands = yield from self._reach_down(frame, trace, crossings, knots[0])
+        if isinstance(hands, MotionFailure):
+            return failure(hands.code, hands.text, stage=hands.stage)
+        yield from set_grips(self._arms, {hands[0]: "cage", hands[1]: "pinch"})
+        missed = [arm for arm in hands if not self._arms.holds(arm)]
+        failed = None if missed else (yield from self._pull_apart(hands, separation_m))
         risen = yield from release(self._arms, hands, CLEARANCE_M)
         if missed:
             return failure("grasp.missed", f"closed on nothing: {', '.join(missed)}")
@@ -78,20 +81,31 @@ class DilateKnot(Skill):
         """Bring the arms to rest."""
         self._arms.stop()
 
-    def _choose_pair(
+    def _reach_down(
         self, frame: CameraFrame, trace: Trace, crossings: Sequence[Crossing], knot: Knot
-    ) -> Generator[None, None, tuple[tuple[Arm, Arm], dict[Arm, TcpGoal]] | None]:
-        """Return (cage hand, pinch hand) and their goals for the best pair that both reach."""
-        pairs = ranked_pairs(
-            cage_sites(trace, crossings, knot), pinch_sites(trace, crossings, knot), frame
+    ) -> Generator[None, None, tuple[Arm, Arm] | MotionFailure]:
+        """Put both hands around the cable at the best pair of sites that they can reach.
+
+        Returns:
+            The cage hand and the pinch hand, or why the last pair that was tried failed.
+        """
+        cages, pinches = cage_sites(trace, crossings, knot), pinch_sites(trace, crossings, knot)
+        failed = MotionFailure(
+            "motion.unreachable", "ik", "no two sites around the knot are apart and in reach"
         )
-        for cage, pinch in pairs[:MOST_PAIRS]:
+        for cage, pinch in ranked_pairs(cages, pinches, frame)[:MOST_PAIRS]:
             goals = (_goal(frame, cage), _goal(frame, pinch))
-            hands = self._arms.assign(goals)
-            if not isinstance(hands, MotionFailure):
-                return hands, dict(zip(hands, goals, strict=True))
-            yield
-        return None
+            hands = self._arms.assign((above(goals[0], CLEARANCE_M), above(goals[1], CLEARANCE_M)))
+            if isinstance(hands, MotionFailure):
+                failed = hands
+                continue
+            blocked = yield from descend(
+                self._arms, dict(zip(hands, goals, strict=True)), CLEARANCE_M
+            )
+            if blocked is None:
+                return hands
+            failed = blocked
+        return failed
 
     def _pull_apart(self, hands: tuple[Arm, Arm], separation_m: float) -> MotionSteps:
         """Lift, move apart as far as asked or as far as the arms reach, lay down."""
@@ -157,7 +171,8 @@ def apart(tips_m: Mapping[Arm, Floats], span_m: float) -> dict[Arm, Floats]:
 
 
 def _spot_m(frame: CameraFrame, site: GraspSite) -> Floats:
-    return frame.camera.on_plane(site.point_px)[0]
+    spot_m: Floats = frame.camera.on_plane(site.point_px)[0]
+    return spot_m
 
 
 def _goal(frame: CameraFrame, site: GraspSite) -> TcpGoal:

@@ -1,6 +1,7 @@
 """Pieces of motion that skills share, written as generators: `yield` while arms are moving."""
 
 from collections.abc import Generator, Mapping
+from dataclasses import replace
 
 import numpy as np
 
@@ -30,14 +31,22 @@ def set_grips(arms: DualArm, grips: Mapping[Arm, Grip]) -> Generator[None, None,
         yield
 
 
+def above(goal: TcpGoal, clearance_m: float, *then_m: Floats) -> TcpGoal:
+    """Return the goal from which a tool can go straight down onto `goal`, and on from there.
+
+    Args:
+        goal: Where the tool goes down to.
+        clearance_m: Height above it.
+        then_m: Straight motions that must be possible after that, one after the other.
+    """
+    down_m = np.array([0.0, 0.0, -clearance_m])
+    return replace(goal, position_m=goal.position_m - down_m, onward_m=(down_m, *then_m))
+
+
 def descend(arms: DualArm, goals: Mapping[Arm, TcpGoal], clearance_m: float) -> MotionSteps:
     """Go to `clearance_m` above each goal, then straight down onto it."""
-    rise_m = np.array([0.0, 0.0, clearance_m])
-    above = {
-        arm: TcpGoal(goal.position_m + rise_m, goal.yaw_rad, goal.max_tilt_rad)
-        for arm, goal in goals.items()
-    }
-    failed = yield from follow(arms, arms.plan(above))
+    hover = {arm: above(goal, clearance_m) for arm, goal in goals.items()}
+    failed = yield from follow(arms, arms.plan(hover))
     if failed is not None:
         return failed
     down_m = {arm: goal.position_m - arms.tcp_position(arm) for arm, goal in goals.items()}

@@ -1,0 +1,109 @@
+"""Move a held piece of cable a little, to where there is room (the thesis's perturbation)."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from executive.core.outcome import Outcome, failure, success
+from executive.core.skill import Skill, SkillRun
+from perception.cable.interfaces import CableVision
+from perception.cable.types import Points
+from perception.camera import CameraFrame
+from robots.interfaces import DualArm, Floats, MotionFailure
+from skills.cable.grasping import CLEARANCE_M, first_reachable, grasp_goal
+from skills.motion.steps import MOTION_REASONS, descend, move_by, release, set_grips
+
+# Thesis section 3.5: uniform displacement in a square of 10 cm x 10 cm.
+HALF_SQUARE_M = 0.05
+# Of so many random displacements the one with the most room is taken.
+DRAWS = 16
+LIFT_M = 0.03
+# Cable nearer than this to the held point moves along with it.
+OWN_PX = 60.0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Hold:
+    """A place to take hold of the cable.
+
+    Attributes:
+        point_px: On the centre line, shape (2,).
+        direction: Unit tangent, shape (2,).
+        leading_px: What should come to lie free, e.g. the connector, shape (2,).
+    """
+
+    point_px: Points
+    direction: Points
+    leading_px: Points
+
+
+class ShiftSkill(Skill):
+    """Base of skills that grasp one place of the cable and shift it into free space."""
+
+    REASONS = MOTION_REASONS | {"grasp.unreachable", "grasp.missed"}
+    ACTS = True
+
+    def __init__(self, arms: DualArm, vision: CableVision, rng: np.random.Generator) -> None:
+        """Bind the arms, perception and the mission's random numbers."""
+        self._arms, self._vision, self._rng = arms, vision, rng
+
+    def shift(self, frame: CameraFrame, holds: Sequence[Hold]) -> SkillRun:
+        """Grasp at the first hold that an arm reaches, lift, shift, lay down, rise."""
+        goals = [grasp_goal(frame, hold.point_px, hold.direction) for hold in holds]
+        found = first_reachable(self._arms, goals)
+        yield
+        if found is None:
+            return failure("grasp.unreachable", "no arm reaches the cable", holds=len(holds))
+        arm, goal = found
+        failed = yield from descend(self._arms, {arm: goal}, CLEARANCE_M)
+        if failed is not None:
+            return _outcome(failed)
+        yield from set_grips(self._arms, {arm: "pinch"})
+        if not self._arms.holds(arm):
+            yield from release(self._arms, (arm,), CLEARANCE_M)
+            return failure("grasp.missed", f"the {arm} gripper closed on nothing")
+        room = room_map(self._vision.cable_pixels(frame.image), holds[goals.index(goal)])
+        step_m = roomiest_step(frame, holds[goals.index(goal)].leading_px, room, self._rng)
+        for leg_m in (np.array([0.0, 0.0, LIFT_M]), step_m, np.array([0.0, 0.0, -LIFT_M])):
+            failed = failed or (yield from move_by(self._arms, {arm: leg_m}))
+        risen = yield from release(self._arms, (arm,), CLEARANCE_M)
+        return _outcome(failed or risen)
+
+    def stop(self) -> None:
+        """Bring the arms to rest."""
+        self._arms.stop()
+
+
+Room = Callable[[Points], float]
+
+
+def room_map(cable: NDArray[np.bool_], hold: Hold) -> Room:
+    """Return the distance [px] of an image point to cable that does not move along."""
+    rows, columns = np.nonzero(cable[::2, ::2])
+    pixels = 2.0 * np.column_stack([columns, rows])
+    resting = pixels[np.linalg.norm(pixels - hold.point_px, axis=1) > OWN_PX]
+
+    def room_px(point_px: Points) -> float:
+        return float(np.linalg.norm(resting - point_px, axis=1).min(initial=1e3))
+
+    return room_px
+
+
+def roomiest_step(
+    frame: CameraFrame, leading_px: Points, room_px: Room, rng: np.random.Generator
+) -> Floats:
+    """Return the level displacement [m] after which `leading_px` has the most room."""
+    steps_m = np.zeros((DRAWS, 3))
+    steps_m[:, :2] = rng.uniform(-HALF_SQUARE_M, HALF_SQUARE_M, (DRAWS, 2))
+    here_m = frame.camera.on_plane(leading_px)[0]
+    places_px = frame.camera.project(here_m + steps_m)
+    best: Floats = steps_m[int(np.argmax([room_px(place) for place in places_px]))]
+    return best
+
+
+def _outcome(failed: MotionFailure | None) -> Outcome:
+    if failed is not None:
+        return failure(failed.code, failed.text, stage=failed.stage)
+    return success()
