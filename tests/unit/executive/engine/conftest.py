@@ -1,7 +1,7 @@
 """What the tests of the language share."""
 
 import pytest
-from language import Bench
+from toy_language import Bench
 
 
 @pytest.fixture

@@ -1,7 +1,7 @@
 """What a document may hold, and how a fault in its shape is told."""
 
 import pytest
-from language import toy_skills, toy_types
+from toy_language import toy_skills, toy_types
 
 from executive.core.errors import DocumentError
 from executive.engine.library import Library

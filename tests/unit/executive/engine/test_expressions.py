@@ -5,7 +5,7 @@ import contextlib
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from language import Colour, Part
+from toy_language import Colour, Part
 
 from executive.core.errors import InputError
 from executive.engine.expression import parse_expression

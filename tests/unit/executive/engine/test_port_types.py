@@ -6,8 +6,8 @@ from typing import Any, Literal, Protocol, runtime_checkable
 
 import numpy as np
 import pytest
-from language import Colour, Part, toy_types
 from numpy.typing import NDArray
+from toy_language import Colour, Part, toy_types
 
 from executive.core.errors import InputError
 from executive.engine.porttypes import accepts, check, fit, parse_type, type_name

@@ -143,7 +143,7 @@ def test_all_faults_of_a_tree_come_in_one_pass_with_line_and_column(bench):
           - {skill: sort, in: {colour: gren}}
         """
     )
-    from language import toy_skills, toy_types
+    from toy_language import toy_skills, toy_types
 
     from executive.core.errors import DocumentError
     from executive.engine.loader import load_program

@@ -122,7 +122,7 @@ def test_default_of_an_outer_input_reaches_a_subtree(inner):
 
 
 def test_subtrees_are_found_beside_in_sibling_folders_and_in_search_paths(tmp_path, bench):
-    from language import toy_skills, toy_types
+    from toy_language import toy_skills, toy_types
 
     from executive.engine.loader import load_program
 

@@ -1,0 +1,111 @@
+"""py_trees 2.6 leaves with ports run unchanged in trees of ours."""
+
+from typing import ClassVar
+
+import pytest
+from py_trees.behaviour import Behaviour
+from py_trees.blackboard import Blackboard
+from py_trees.common import Status
+from py_trees.ports import PortInformation, PortsMixin
+from toy_language import Journal, toy_skills, toy_types
+
+from executive.core.errors import DocumentError
+from executive.core.skill import input_ports
+from executive.engine.builder import build
+from executive.engine.foreign import skill_from_behaviour
+from executive.engine.loader import load_program
+
+
+class Scale(PortsMixin, Behaviour):
+    """Multiply, one tick late."""
+
+    INPUT_PORTS: ClassVar = {
+        "value": PortInformation(float, description="what to multiply"),
+        "factor": PortInformation(float, default_value=2.0),
+        "note": PortInformation(str, required=False),
+    }
+    OUTPUT_PORTS: ClassVar = {"product": PortInformation(float)}
+
+    def __init__(self, name: str, journal: Journal):
+        super().__init__(name)
+        self.journal = journal
+
+    def initialise(self):
+        self.ticks = 0
+        self.journal.note("initialise")
+
+    def update(self):
+        self.ticks += 1
+        if self.ticks == 1:
+            return Status.RUNNING
+        if self.get_input("value") < 0:
+            self.feedback_message = "negative"
+            return Status.FAILURE
+        self._set_output("product", self.get_input("value") * self.get_input("factor"))
+        return Status.SUCCESS
+
+    def terminate(self, new_status):
+        self.journal.note(f"terminate {new_status.value}")
+
+
+@pytest.fixture(autouse=True)
+def no_leftovers():
+    """Empty the blackboard of the process."""
+    yield
+    Blackboard.clear()
+
+
+def load(bench, root):
+    skills = toy_skills()
+    skills.add("scale", skill_from_behaviour(Scale))
+    return load_program(bench.write_root(root), skills=skills, types=toy_types())
+
+
+def run(bench, root, ticks):
+    program = load(bench, root)
+    bench.tree = build(program, devices={"journal": bench.journal}, clock=bench.clock)
+    return bench.tick(ticks)
+
+
+def test_ports_are_read_from_the_declaration():
+    ports = input_ports(skill_from_behaviour(Scale))
+    assert {name: (port.type, port.required) for name, port in ports.items()} == {
+        "value": (float, True),
+        "factor": (float, False),
+        "note": (str | None, False),
+    }
+
+
+def test_values_cross_from_and_to_the_blackboard_of_the_tree(bench):
+    root = """
+    sequence:
+      - {skill: scale, name: a, in: {value: 3}, out: {product: $p}}
+      - {skill: scale, name: b, in: {value: $p, factor: 10}, out: {product: $q}}
+    """
+    assert run(bench, root, 3) == ["RUNNING", "RUNNING", "SUCCESS"]
+    assert bench.tree.scope["q"] == 60.0
+
+
+def test_failure_carries_the_message_of_the_leaf(bench):
+    assert run(bench, "{skill: scale, in: {value: -1}}", 2) == ["RUNNING", "FAILURE"]
+    assert str(bench.tree.root.outcome.reason) == "behaviour.failed: negative"
+
+
+def test_a_halted_leaf_is_terminated_once(bench):
+    run(bench, "{skill: scale, in: {value: 1}}", 1)
+    bench.tree.root.stop(Status.INVALID)
+    bench.tree.root.stop(Status.INVALID)
+    assert bench.journal.lines == ["initialise", "terminate INVALID"]
+
+
+def test_wiring_is_checked_like_that_of_any_skill(bench):
+    with pytest.raises(DocumentError) as found:
+        load(bench, "{skill: scale, in: {value: x, factr: 2}}")
+    messages = str(found.value)
+    assert "input 'value': expected float, got 'x'" in messages
+    assert "skill 'scale' has no input 'factr'; did you mean 'factor'?" in messages
+
+
+def test_a_node_without_ports_is_refused():
+    with pytest.raises(TypeError, match="expected a py_trees leaf with ports"):
+        skill_from_behaviour(Behaviour)
