@@ -63,6 +63,24 @@ def test_modules_to_run_exist(page):
     assert [name for name in named if importlib.util.find_spec(name) is None] == []
 
 
+def message_parts(heading: str) -> list[str]:
+    """Return the words of a message that never differ; capitals stand for what does."""
+    message = re.sub(r"'[A-Z]+'|\b[A-Z]+\b(?!_)", "\0", heading)
+    return [part.strip(" ,()") for part in message.split("\0") if len(part.strip(" ,()")) > 3]
+
+
+def test_messages_of_the_troubleshooting_page_are_in_the_code():
+    packages = [path.parent for path in ROOT.glob("*/__init__.py")]
+    sources = [path for package in packages for path in package.glob("**/*.py")]
+    text = "".join(path.read_text(encoding="utf-8") for path in [*sources, ROOT / "Makefile"])
+    text = re.sub(r"""["']\s*\n\s*f?["']""", "", text).replace("{{", "{").replace("}}", "}")
+    page = (ROOT / "docs/troubleshooting.md").read_text(encoding="utf-8")
+    messages = re.findall(r"^### `(.+)`$", page, re.MULTILINE)
+    assert len(messages) > 10
+    parts = [part for message in messages for part in message_parts(message)]
+    assert [part for part in parts if part not in text] == []
+
+
 def test_generated_pages_are_current():
     page = subprocess.run(
         [sys.executable, "docs/skills_page.py"],
