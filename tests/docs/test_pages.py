@@ -66,7 +66,8 @@ def test_modules_to_run_exist(page):
 def message_parts(heading: str) -> list[str]:
     """Return the words of a message that never differ; capitals stand for what does."""
     message = re.sub(r"'[A-Z]+'|\b[A-Z]+\b(?!_)", "\0", heading)
-    return [part.strip(" ,()") for part in message.split("\0") if len(part.strip(" ,()")) > 3]
+    parts = (part.strip(" ,;?.()") for part in message.split("\0"))
+    return [part for part in parts if len(part) > 3]
 
 
 def test_messages_of_the_troubleshooting_page_are_in_the_code():
