@@ -4,7 +4,7 @@ import traceback
 from contextlib import ExitStack, closing
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Literal, Protocol
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 from pydantic import JsonValue
@@ -19,8 +19,10 @@ from executive.engine.control import EmergencyStopped, RunControl, stopped_by_si
 from executive.engine.loader import load_mission
 from executive.engine.recording.messages import RunReport
 from executive.engine.runner import MissionOutcome, one_line
-from executive.engine.ticks import RunObserver
 from executive.inspector.views import OUTCOME_STYLES
+
+if TYPE_CHECKING:
+    from executive.app.views import LiveView
 
 _BAD_INPUT, _ERROR = 2, MissionOutcome.ERROR.exit_code
 
@@ -36,19 +38,6 @@ class _Request:
     timeout_s: float | None
     view: bool
     html: Path | None
-
-
-class _LiveView(RunObserver, Protocol):
-    """A view that shows the cell while it runs."""
-
-    @property
-    def url(self) -> str:
-        """Where to look."""
-        ...
-
-    def close(self) -> None:
-        """End the view."""
-        ...
 
 
 def run(
@@ -144,7 +133,7 @@ def _recorded_run(request: _Request, control: RunControl, console: Console) -> R
             return run_mission(plan, tree, cell, control, (display, *live))
 
 
-def _live_view(console: Console) -> _LiveView:
+def _live_view(console: Console) -> "LiveView":
     from executive.app.views import open_live_view
 
     view = open_live_view()

@@ -57,6 +57,6 @@ class Cell(Protocol):
     def truth(self) -> object | None:
         """Return a dataclass that scores the end state, or None on a real cell.
 
-        Only the command line calls it, once, after the mission has ended.
+        Only the report of a run asks for it, once, after the mission has ended.
         """
         ...

@@ -104,13 +104,14 @@ def blackboard_view(recording: Recording, number: int) -> RenderableType | None:
     states = recording.blackboard(number)
     if not states:
         return None
-    table = Table(box=None, padding=(0, 2, 0, 0), header_style="bright_black")
-    for column in ("key", "value", "written by", "tick"):
-        table.add_column(column, overflow="ellipsis", no_wrap=True)
+    table = Table(box=None, padding=(0, 2, 0, 0), header_style="bright_black", expand=True)
+    for column in ("tick", "key", "written by"):
+        table.add_column(column, no_wrap=True)
+    table.add_column("value", no_wrap=True, overflow="ellipsis", ratio=1)
     for key, state in states.items():
         fresh = "bold" if state.tick == number else ""
         writer = _tail(state.writer) or "input"
-        table.add_row(Text(_tail(key), fresh), Text(brief(state.value)), writer, str(state.tick))
+        table.add_row(str(state.tick), Text(_tail(key), fresh), writer, Text(brief(state.value)))
     return table
 
 

@@ -229,6 +229,18 @@ def test_one_interrupt_ends_the_process_in_order_with_4(tmp_path):
     assert recording.tick(len(recording) - 1).halts
 
 
+def test_a_second_interrupt_breaks_into_a_tick_that_hangs(tmp_path):
+    process = started(tmp_path, "--set", "steps=1", "--set", "ending=hang")
+    ticking(tmp_path / "a.mcap")
+    for _ in range(2):
+        time.sleep(0.3)
+        process.send_signal(signal.SIGINT)
+    stdout, stderr = process.communicate(timeout=30)
+    document = json.loads(stdout)
+    assert (process.returncode, document["outcome"]) == (4, "aborted"), stderr
+    assert document["reason"].startswith("emergency stop by SIGINT")
+
+
 def test_stdout_holds_nothing_but_the_document(tmp_path):
     process = started(tmp_path, "--set", "steps=1")
     stdout, stderr = process.communicate(timeout=30)

@@ -73,6 +73,8 @@ class ToyEnd(Skill):
 
     def run(self) -> SkillRun:
         yield from ()
+        if self._ending == "hang":
+            time.sleep(60.0)
         if self._ending == "raise":
             raise DeviceError("the toy broke")
         if self._ending == "failure":
@@ -88,7 +90,7 @@ class ScoredCell(ToyCell):
 
 def open_toy_cell(document, scenario, seed):
     """Open a cell that knows the truth."""
-    allowed = ("success", "failure", "raise")
+    allowed = ("success", "failure", "raise", "hang")
     if scenario["ending"] not in allowed:
         raise InputError(f"scenario: ending: {closest(str(scenario['ending']), list(allowed))}")
     return ScoredCell(devices={"ending": scenario["ending"]})
