@@ -21,6 +21,7 @@ from pydantic import (
     WithJsonSchema,
 )
 from pydantic_core import PydanticCustomError, core_schema
+from typing_extensions import TypeAliasType
 
 Name = Annotated[str, StringConstraints(strict=True, pattern=r"^[a-z][a-z0-9_]*$")]
 Text = Annotated[str, Field(strict=True)]
@@ -313,16 +314,20 @@ def kind_of(value: object) -> str | None:
 if TYPE_CHECKING:
     Node = NodeModel
 else:
-    # Discriminated by its kind, so that a fault speaks of that kind alone.
-    Node = Annotated[
-        Union[  # noqa: UP007 - its members come out of tables
-            tuple(
-                [Annotated[model, Tag(kind)] for kind, model in LEAVES.items()]
-                + [Annotated[model, _Under(kind), Tag(kind)] for kind, model in BLOCKS.items()]
-            )
+    # Discriminated by its kind, so that a fault speaks of that kind alone; an alias with a
+    # name, so that pydantic builds it once and not in every place where a node may stand.
+    Node = TypeAliasType(
+        "Node",
+        Annotated[
+            Union[  # noqa: UP007 - its members come out of tables
+                tuple(
+                    [Annotated[model, Tag(kind)] for kind, model in LEAVES.items()]
+                    + [Annotated[model, _Under(kind), Tag(kind)] for kind, model in BLOCKS.items()]
+                )
+            ],
+            Discriminator(kind_of),
         ],
-        Discriminator(kind_of),
-    ]
+    )
 
 
 class OutPort(Model):

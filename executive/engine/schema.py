@@ -19,30 +19,17 @@ SCHEMA_FILE = Path("schema") / "tree.schema.json"
 def make_schema() -> dict[str, Any]:
     """Return the JSON schema of trees, missions and cells."""
     schema = TypeAdapter(Document).json_schema(by_alias=True)
-    node = schema["$defs"]["TreeDocument"]["properties"]["root"]
-    shared = _with_shared_nodes(schema, node)
-    shared["$defs"]["Node"] = _with_plain_lists(node)
+    schema["$defs"]["Node"] = _with_plain_lists(schema["$defs"]["Node"])
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": "Cellwright trees, missions and cells",
-        **_without_titles(shared),
+        **_without_titles(schema),
     }
 
 
 def schema_text() -> str:
     """Return the schema as it stands in its file."""
     return json.dumps(make_schema(), indent=2, sort_keys=True) + "\n"
-
-
-def _with_shared_nodes(part: Any, node: dict[str, Any]) -> Any:
-    """Replace every copy of the node's schema by a reference to one."""
-    if isinstance(part, dict):
-        if part.get("oneOf") == node["oneOf"]:
-            return {"$ref": "#/$defs/Node"}
-        return {key: _with_shared_nodes(value, node) for key, value in part.items()}
-    if isinstance(part, list):
-        return [_with_shared_nodes(value, node) for value in part]
-    return part
 
 
 def _with_plain_lists(node: dict[str, Any]) -> dict[str, Any]:
