@@ -60,13 +60,15 @@ def write_html(
             "expected at least one; try a mission on a simulated cell"
         )
     recording = {**_still(stage, kept), **_moving(stage, kept)}
+    viewer, ours = files("meshcat") / "viewer/dist", files("robots.viewer")
     parts = {
         "title": html.escape(title),
         "recording": json.dumps(recording, separators=(",", ":")).replace("<", "\\u003c"),
-        "meshcat": (files("meshcat") / "viewer/dist/main.min.js").read_text(encoding="utf-8"),
-        "player": (files("robots.viewer") / "player.js").read_text(encoding="utf-8"),
+        "licences": (viewer / "main.min.js.LICENSE.txt").read_text(encoding="utf-8"),
+        "meshcat": (viewer / "main.min.js").read_text(encoding="utf-8"),
+        "player": (ours / "player.js").read_text(encoding="utf-8"),
     }
-    page = (files("robots.viewer") / "page.html").read_text(encoding="utf-8")
+    page = (ours / "page.html").read_text(encoding="utf-8")
     path.write_text(re.sub(r"\{\{(\w+)\}\}", lambda mark: parts[mark[1]], page), encoding="utf-8")
 
 
