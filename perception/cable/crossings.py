@@ -10,6 +10,8 @@ from perception.cable.tracers.centre_line import arc_lengths, point_at, resample
 from perception.cable.types import Crossing, Points, Trace
 
 SPACING_PX = 3.0
+REACH_PX = 24.0
+PATH_STEP_PX = 1.0
 # Two centre lines that lie on each other cross many times by chance.
 MERGE_PX = 14.0
 # A strand cannot cross itself within this length of cable.
@@ -26,6 +28,8 @@ class CrossingSite:
         arcs: Arc positions of both.
         directions: Unit tangents of both, shape (2, 2), one a row.
         turn: +1 where b runs counter-clockwise of a (as if y were up).
+        paths: Both strands from `REACH_PX` before the crossing to as far behind it, every
+            `PATH_STEP_PX`, shape (2, K, 2); beyond a trace's end its end is repeated.
     """
 
     position_px: Points
@@ -33,6 +37,7 @@ class CrossingSite:
     arcs: tuple[float, float]
     directions: Points
     turn: int
+    paths: Points
 
 
 def find_sites(traces: Sequence[Trace]) -> tuple[CrossingSite, ...]:
@@ -55,7 +60,6 @@ def _sites_between(lines: list[Points], i: int, j: int) -> list[CrossingSite]:
     if i == j:
         once = at_b - at_a > SHORTEST_LOOP_PX
         at_a, at_b, turn = at_a[once], at_b[once], turn[once]
-    kept = _merge(at_a, at_b, turn)
     return [
         CrossingSite(
             point_at(lines[i], arcs_a, at_a[k]),
@@ -63,9 +67,15 @@ def _sites_between(lines: list[Points], i: int, j: int) -> list[CrossingSite]:
             (float(at_a[k] / arcs_a[-1]), float(at_b[k] / arcs_b[-1])),
             np.stack([_tangent(lines[i], arcs_a, at_a[k]), _tangent(lines[j], arcs_b, at_b[k])]),
             int(turn[k]),
+            np.stack([_path(lines[i], arcs_a, at_a[k]), _path(lines[j], arcs_b, at_b[k])]),
         )
-        for k in kept
+        for k in _merge(at_a, at_b, turn)
     ]
+
+
+def _path(line: Points, arcs: Points, at_px: float) -> Points:
+    offsets = np.arange(-REACH_PX, REACH_PX + 0.5 * PATH_STEP_PX, PATH_STEP_PX)
+    return point_at(line, arcs, at_px + offsets)
 
 
 def _merge(

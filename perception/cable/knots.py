@@ -1,11 +1,12 @@
 """Knots of traced cables, and where to hold them.
 
-The thesis's rule names places that look like knots; only those whose piece of cable, closed
-over everything, is proved to be knotted are kept. Where the rule names none although the
-whole cable is knotted, the shortest knotted piece is searched for instead.
+The thesis's rule names places that look like knots. Here a piece of cable counts only when
+its diagram, closed over everything, is proved to be knotted; the shortest such pieces are
+the knots, and the rule then says how each is entered and closed.
 """
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -18,9 +19,12 @@ from perception.cable.topology import (
     classify_diagram,
     close_over,
 )
-from perception.cable.topology.rule import Visit, knot_intervals
+from perception.cable.topology.rule import Visit, cancel, closing_visit
 from perception.cable.tracers.centre_line import arc_lengths, point_at
 from perception.cable.types import Crossing, Knot, Points, Trace
+
+# A piece is cut this far beyond its first and last crossing.
+MARGIN_PX = 4.0
 
 
 def find_knots(
@@ -29,28 +33,20 @@ def find_knots(
     """Return the knots of all traces in the order of the traces."""
     config = config or GraspConfig()
     return tuple(
-        knot
+        choose_grasps(traces, index, crossings, interval, config)
         for index, trace in enumerate(traces)
-        for knot in _knots_of(trace, index, traces, crossings, config)
+        for interval in knot_intervals(trace, index, crossings)
     )
 
 
-def _knots_of(
-    trace: Trace,
-    index: int,
-    traces: Sequence[Trace],
-    crossings: Sequence[Crossing],
-    config: GraspConfig,
-) -> list[Knot]:
+def knot_intervals(
+    trace: Trace, index: int, crossings: Sequence[Crossing]
+) -> list[tuple[float, float]]:
+    """Return for each knot of a trace where it is entered below and closed on top."""
     own = [c for c in crossings if c.trace_over == index and c.trace_under == index]
-    if not _is_knotted(trace, index, own, 0.0, 1.0):
-        return []
     visits = visits_of(own)
-    named = [(a.arc, b.arc) for a, b in knot_intervals(visits)]
-    intervals = [span for span in named if _is_knotted(trace, index, own, *span)]
-    if not intervals:
-        intervals = [_shortest_knotted(trace, index, own, visits)]
-    return [choose_grasps(traces, index, crossings, span, config) for span in intervals]
+    search = _Search(strand_of(trace, index, own), visits)
+    return [_entry_and_close(visits, first, last) for first, last in search.knotted_pieces()]
 
 
 def visits_of(crossings: Sequence[Crossing]) -> list[Visit]:
@@ -63,45 +59,59 @@ def visits_of(crossings: Sequence[Crossing]) -> list[Visit]:
     return sorted(visits, key=lambda visit: visit.arc)
 
 
-def _is_knotted(
-    trace: Trace, index: int, crossings: Sequence[Crossing], begin: float, end: float
-) -> bool:
-    """Say whether the piece between two arc positions is knotted when closed over everything.
+@dataclass(frozen=True, slots=True, eq=False)
+class _Search:
+    """Looks for the shortest knotted pieces between visits of one strand."""
 
-    Both arc positions count as part of the piece.
-    """
-    strand = piece(strand_of(trace, index, crossings), begin, end)
-    return classify_diagram(close_over(strand)).state is Knottedness.KNOTTED
+    strand: Strand
+    visits: Sequence[Visit]
+
+    def knotted_pieces(self) -> list[tuple[int, int]]:
+        """Return the first and last visit of each knotted piece, in the order of the strand."""
+        found, begin, last = [], 0, len(self.visits) - 1
+        while begin < last and self.is_knotted(begin, last):
+            end = next(k for k in range(begin + 1, last + 1) if self.is_knotted(begin, k))
+            first = next(k for k in range(end - 1, begin - 1, -1) if self.is_knotted(k, end))
+            found.append((first, end))
+            begin = end + 1
+        return found
+
+    def is_knotted(self, first: int, last: int) -> bool:
+        """Say whether the piece from one visit to another is knotted when closed over all."""
+        part = piece(self.strand, self.visits[first].arc, self.visits[last].arc)
+        return classify_diagram(close_over(part)).state is Knottedness.KNOTTED
 
 
 def piece(strand: Strand, begin: float, end: float) -> Strand:
     """Return the part of a strand between two arc positions, a little beyond both."""
     arcs = arc_lengths(strand.points)
-    margin_px = 4.0
-    low = max(begin * arcs[-1] - margin_px, 0.0)
-    high = min(end * arcs[-1] + margin_px, arcs[-1])
+    low = max(begin * arcs[-1] - MARGIN_PX, 0.0)
+    high = min(end * arcs[-1] + MARGIN_PX, arcs[-1])
     inside = (arcs > low) & (arcs < high)
     ends = point_at(strand.points, arcs, np.array([low, high]))
     points: Points = np.concatenate([ends[:1], strand.points[inside], ends[1:]])
-    shift = int(np.argmax(inside)) - 1
-    index = np.arange(len(arcs), dtype=float)
-    first, last = np.interp([low, high], arcs, index)
-    kept = tuple(
-        StrandCrossing(c.first - shift, c.second - shift, c.turn, c.first_over)
-        for c in strand.crossings
-        if first <= c.first and c.second <= last
-    )
-    return Strand(points, kept)
+    part_arcs, index = arc_lengths(points) + low, np.arange(len(arcs), dtype=float)
+    part_index = np.arange(len(points), dtype=float)
+    kept = []
+    for crossing in strand.crossings:
+        at_px = np.interp([crossing.first, crossing.second], index, arcs)
+        if low <= at_px[0] and at_px[1] <= high:
+            first, second = np.interp(at_px, part_arcs, part_index)
+            kept.append(
+                StrandCrossing(float(first), float(second), crossing.turn, crossing.first_over)
+            )
+    return Strand(points, tuple(kept))
 
 
-def _shortest_knotted(
-    trace: Trace, index: int, crossings: Sequence[Crossing], visits: Sequence[Visit]
-) -> tuple[float, float]:
-    """Return the piece that is left when visits are dropped from both ends while knotted."""
-    arcs = [visit.arc for visit in visits]
-    begin, end = 0, len(arcs) - 1
-    while begin < end and _is_knotted(trace, index, crossings, arcs[begin + 1], arcs[end]):
-        begin += 1
-    while begin < end and _is_knotted(trace, index, crossings, arcs[begin], arcs[end - 1]):
-        end -= 1
-    return arcs[begin], arcs[end]
+def _entry_and_close(visits: Sequence[Visit], first: int, last: int) -> tuple[float, float]:
+    """Return where a knot is entered by an undercrossing and closed by its overcrossing.
+
+    The thesis's rule is asked from the first visit of the knotted piece on, about the crossings
+    that are left after cancelling, else about all; else the whole piece is the answer.
+    """
+    begin, end = visits[first].arc, visits[last].arc
+    for candidates in (cancel(visits), list(visits)):
+        for k, visit in enumerate(candidates):
+            if begin <= visit.arc <= end and (close := closing_visit(candidates, k)) is not None:
+                return visit.arc, close.arc
+    return begin, end

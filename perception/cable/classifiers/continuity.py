@@ -4,14 +4,20 @@ Beside the upper strand the lower one dips: the upper one's dark border and its 
 shadow lie on it.
 """
 
+from itertools import pairwise
+
 import numpy as np
 
-from perception.cable.classifiers.evidence import EvidenceClassifier, along_strand, sample, sine
+from perception.cable.classifiers.evidence import EvidenceClassifier, Ribbon, ribbon
 from perception.cable.crossings import CrossingSite
 from perception.cable.mask import CableMask
 from perception.camera import GreyImage
 
 DEFAULT_GAIN = 12.0
+# A strand's own border is left out; distances from the other strand are in cable widths.
+CORE = 0.2
+FLANK = (0.35, 0.95)
+FLANK_BINS = 4
 
 
 class ContinuityClassifier(EvidenceClassifier):
@@ -23,19 +29,19 @@ class ContinuityClassifier(EvidenceClassifier):
 
     def evidence(self, image: GreyImage, mask: CableMask, site: CrossingSite) -> float:
         """Return how much deeper strand b dips than strand a, as a share of the contrast."""
-        dips = [self._dip(image, mask, site, which) for which in (0, 1)]
-        return dips[1] - dips[0]
+        dips = [_dip(ribbon(image, site, which, mask.width_px), mask.width_px) for which in (0, 1)]
+        return (dips[1] - dips[0]) / mask.contrast
 
-    def _dip(self, image: GreyImage, mask: CableMask, site: CrossingSite, which: int) -> float:
-        """Return how dark a strand gets where it would meet the border of the other."""
-        half_px = 0.5 * mask.width_px / sine(site)
-        along_px = np.linspace(0.5 * half_px, 1.7 * half_px, 9)
-        aside_px = np.linspace(-0.18, 0.18, 3)[:, None] * mask.width_px
-        middle = float(sample(image, site.position_px[None])[0])
-        dips = []
-        for way in (-1.0, 1.0):
-            flank = sample(image, along_strand(site, which, way * along_px, aside_px)).mean(axis=0)
-            far = along_strand(site, which, way * np.linspace(1.7, 2.3, 5) * half_px, aside_px)
-            outer = float(sample(image, far).mean())
-            dips.append(max(0.5 * (middle + outer) - float(flank.min()), 0.0))
-        return float(np.mean(dips)) / mask.contrast
+
+def _dip(strand: Ribbon, width_px: float) -> float:
+    """Return how dark a strand gets where it meets the borders of the other."""
+    core = np.abs(strand.aside_px) <= CORE * width_px
+    values, other = strand.values[:, core], strand.other_px[:, core] / width_px
+    level = float(np.median(values[np.abs(other) < 2.0]))
+    edges = np.linspace(*FLANK, FLANK_BINS + 1)
+    dips = []
+    for side in (-1.0, 1.0):
+        bins = [values[(side * other >= a) & (side * other < b)] for a, b in pairwise(edges)]
+        means = [float(found.mean()) for found in bins if found.size]
+        dips.append(level - min(means, default=level))
+    return float(np.mean(dips))

@@ -7,12 +7,15 @@ upper strand's bright body, where nothing is to be seen.
 
 import numpy as np
 
-from perception.cable.classifiers.evidence import EvidenceClassifier, along_strand, sample, sine
+from perception.cable.classifiers.evidence import EvidenceClassifier, Ribbon, ribbon
 from perception.cable.crossings import CrossingSite
 from perception.cable.mask import CableMask
 from perception.camera import GreyImage
 
 DEFAULT_GAIN = 14.0
+# In cable widths: where a strand's border is, and which part of the other strand is its core.
+BORDER = (0.35, 0.75)
+CORE = 0.3
 
 
 class EdgeClassifier(EvidenceClassifier):
@@ -24,26 +27,23 @@ class EdgeClassifier(EvidenceClassifier):
 
     def evidence(self, image: GreyImage, mask: CableMask, site: CrossingSite) -> float:
         """Return how much darker strand a's border lines are than strand b's."""
-        borders = [self._border(image, mask, site, which) for which in (0, 1)]
+        borders = [
+            _border(ribbon(image, site, which, mask.width_px), mask.width_px) for which in (0, 1)
+        ]
         return (borders[1] - borders[0]) / mask.contrast
 
-    def _border(self, image: GreyImage, mask: CableMask, site: CrossingSite, which: int) -> float:
-        """Return the grey value of a strand's border lines within the other strand's core."""
-        half_px = 0.5 * mask.width_px
-        core_px = 0.5 * half_px / sine(site)
-        lines = []
-        for side in (-1.0, 1.0):
-            aside_px = side * np.linspace(0.7, 1.15, 4)[:, None] * half_px
-            # Where strands cross obliquely, the core is shifted along the border line.
-            shift_px = self._shift(site, which) * aside_px
-            along_px = np.linspace(-core_px, core_px, 5) + shift_px
-            values = sample(image, along_strand(site, which, along_px, aside_px))
-            lines.append(float(values.mean(axis=1).min()))
-        return float(np.mean(lines))
 
-    def _shift(self, site: CrossingSite, which: int) -> float:
-        """Return how far along a strand the other one moves for each pixel beside it."""
-        own, other = site.directions[which], site.directions[1 - which]
-        beside = float(own[0] * other[1] - own[1] * other[0])
-        along = float(own @ other)
-        return float(np.clip(along / beside, -3.0, 3.0)) if beside else 0.0
+def _border(strand: Ribbon, width_px: float) -> float:
+    """Return the grey value of a strand's darkest border lines on the other strand's core."""
+    on_other = np.abs(strand.other_px) < CORE * width_px
+    lines = []
+    for side in (-1.0, 1.0):
+        distance = side * strand.aside_px / width_px
+        columns = np.flatnonzero((distance >= BORDER[0]) & (distance <= BORDER[1]))
+        means = [
+            float(strand.values[on_other[:, column], column].mean())
+            for column in columns
+            if on_other[:, column].any()
+        ]
+        lines.append(min(means, default=float(np.median(strand.values))))
+    return float(np.mean(lines))

@@ -7,13 +7,15 @@ the logit of the belief: P(a over b) = 1 - P(b over a) by construction.
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
+from dataclasses import dataclass
 
+import cv2
 import numpy as np
-from scipy.ndimage import map_coordinates
 
 from perception.cable.crossings import CrossingSite, decide, find_sites
 from perception.cable.mask import CableMask
 from perception.cable.observation import observe
+from perception.cable.tracers.centre_line import tangents
 from perception.cable.types import Crossing, Points, Trace
 from perception.camera import GreyImage
 
@@ -21,29 +23,48 @@ from perception.camera import GreyImage
 MOST_CERTAIN = 0.998
 
 
-def sample(image: GreyImage, points_px: Points) -> Points:
-    """Return grey values at points (x, y), shape (..., 2), by bilinear interpolation."""
-    x, y = points_px[..., 0], points_px[..., 1]
-    values: Points = map_coordinates(
-        image, [y, x], order=1, mode="nearest", output=np.float64, prefilter=False
-    )
-    return values
+def sample(image: GreyImage, places_px: Points) -> Points:
+    """Return grey values at places (x, y), shape (K, M, 2), by bilinear interpolation."""
+    x, y = (np.ascontiguousarray(places_px[..., axis], dtype=np.float32) for axis in (0, 1))
+    values = cv2.remap(image, x, y, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
+    return np.asarray(values, dtype=float)
 
 
-def along_strand(
-    site: CrossingSite, which: int, along_px: Points, aside_px: Points | float
-) -> Points:
-    """Return points at distances along and beside one strand through a site."""
-    direction = site.directions[which]
-    normal = np.array([-direction[1], direction[0]])
-    along, aside = np.broadcast_arrays(along_px, aside_px)
-    return site.position_px + along[..., None] * direction + aside[..., None] * normal
+@dataclass(frozen=True, slots=True, eq=False)
+class Ribbon:
+    """Grey values on and beside one strand through a crossing, bent with the strand.
+
+    Attributes:
+        values: Grey values, shape (K, M): K places along the strand, M beside it.
+        aside_px: Distances of the M places from its centre line.
+        other_px: Signed distance of each place to the other strand's centre line, (K, M).
+    """
+
+    values: Points
+    aside_px: Points
+    other_px: Points
 
 
-def sine(site: CrossingSite) -> float:
-    """Return the sine of the angle between the strands, kept away from zero."""
-    (ax, ay), (bx, by) = site.directions
-    return max(abs(float(ax * by - ay * bx)), 0.3)
+def ribbon(image: GreyImage, site: CrossingSite, which: int, width_px: float) -> Ribbon:
+    """Return the surroundings of one strand within a cable width of its centre line."""
+    path, other = site.paths[which], site.paths[1 - which]
+    along = tangents(path, reach=4)
+    normals = np.column_stack([-along[:, 1], along[:, 0]])
+    aside_px = np.linspace(-0.8, 0.8, 13) * width_px
+    places = path[:, None, :] + aside_px[:, None] * normals[:, None, :]
+    return Ribbon(sample(image, places), aside_px, _signed_distance(places, other))
+
+
+def _signed_distance(places: Points, path: Points) -> Points:
+    """Return the distance of places (K, M, 2) to a path, negative on its right."""
+    flat = places.reshape(-1, 2)
+    squared = (flat**2).sum(axis=1)[:, None] - 2.0 * flat @ path.T + (path**2).sum(axis=1)
+    nearest = squared.argmin(axis=1)
+    offset, along = flat - path[nearest], tangents(path, reach=2)[nearest]
+    side = along[:, 0] * offset[:, 1] - along[:, 1] * offset[:, 0]
+    gaps = np.linalg.norm(offset, axis=1)
+    signed: Points = np.where(side >= 0.0, gaps, -gaps)
+    return signed.reshape(places.shape[:2])
 
 
 def probability(evidence: float, gain: float) -> float:

@@ -1,7 +1,7 @@
 """The thesis's knot rule (section 3.3): cancel crossings, then look for under ... over.
 
-The rule is necessary for a knot but not sufficient, so it names places, and the diagram of
-each place is classified afterwards (`perception.cable.knots`).
+The rule is necessary for a knot but not sufficient: `perception.cable.knots` asks it only
+about pieces that are proved to be knotted, and benchmarks hold it against the proof.
 """
 
 from collections.abc import Sequence
@@ -46,28 +46,35 @@ def _cancel_first(visits: list[Visit]) -> list[Visit] | None:
 
 
 def knot_intervals(visits: Sequence[Visit]) -> list[tuple[Visit, Visit]]:
-    """Return the first and last visit of each potential knot, in the order of the curve.
-
-    A potential knot starts with an undercrossing whose other visit comes later, with at least
-    one overcrossing in between that is not paired up inside.
-    """
+    """Return the first and last visit of each potential knot, in the order of the curve."""
     left, found, begin = cancel(visits), [], 0
     while begin < len(left):
-        end = _closing(left, begin)
-        if end is None:
+        close = closing_visit(left, begin)
+        if close is None:
             begin += 1
         else:
-            found.append((left[begin], left[end]))
-            begin = end + 1
+            found.append((left[begin], close))
+            begin = left.index(close) + 1
     return found
 
 
-def _closing(visits: list[Visit], begin: int) -> int | None:
-    """Return where the potential knot that starts at `begin` ends; None where none does."""
+def closing_visit(visits: Sequence[Visit], begin: int) -> Visit | None:
+    """Return the visit that closes the potential knot which begins at a visit.
+
+    A potential knot starts with an undercrossing whose other visit comes later, with at least
+    one overcrossing in between.
+
+    Args:
+        visits: Visits of the curve that are left after cancelling.
+        begin: Index of the visit that may begin a knot.
+
+    Returns:
+        The overcrossing at the same place, or None where no knot begins.
+    """
     if visits[begin].over:
         return None
     for end in range(begin + 1, len(visits)):
         if visits[end].crossing == visits[begin].crossing:
             inside = visits[begin + 1 : end]
-            return end if any(visit.over for visit in inside) else None
+            return visits[end] if any(visit.over for visit in inside) else None
     return None

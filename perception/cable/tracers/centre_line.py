@@ -49,3 +49,42 @@ def tangents(points: Points, reach: int = 3) -> Points:
     chords = points[ahead] - points[behind]
     unit: Points = chords / np.maximum(np.linalg.norm(chords, axis=1, keepdims=True), 1e-9)
     return unit
+
+
+def bend_between(before: Points, after: Points, reach_px: float) -> Points:
+    """Return points on a cubic from the end of one line to the start of another.
+
+    Args:
+        before: A line, shape (N, 2).
+        after: Another one, shape (M, 2).
+        reach_px: Length of either line that gives its direction.
+
+    Returns:
+        About one point a pixel, both ends left out, shape (K, 2).
+    """
+    chord = after[0] - before[-1]
+    gap_px = float(np.linalg.norm(chord))
+    count = int(gap_px)
+    if count < 2:
+        return np.empty((0, 2))
+    leaving, entering = _direction(before[::-1], reach_px), _direction(after, reach_px)
+    start = -leaving if leaving is not None else chord / gap_px
+    stop = entering if entering is not None else chord / gap_px
+    t = (np.arange(1, count) / count)[:, None]
+    cubic: Points = (
+        (1.0 + 2.0 * t) * (1.0 - t) ** 2 * before[-1]
+        + t * (1.0 - t) ** 2 * gap_px * start
+        + t**2 * (3.0 - 2.0 * t) * after[0]
+        - t**2 * (1.0 - t) * gap_px * stop
+    )
+    return cubic
+
+
+def _direction(line: Points, reach_px: float) -> Points | None:
+    """Return the unit direction in which a line starts; None where it is too short to say."""
+    arcs = arc_lengths(line)
+    if arcs[-1] < 0.3 * reach_px:
+        return None
+    chord = point_at(line, arcs, min(reach_px, float(arcs[-1]))) - line[0]
+    unit: Points = chord / max(float(np.linalg.norm(chord)), 1e-9)
+    return unit

@@ -16,7 +16,13 @@ from perception.cable.endpoints import leaves_view
 from perception.cable.graph import Arm, SkeletonGraph
 from perception.cable.mask import CableMask
 from perception.cable.observation import Observation, observe
-from perception.cable.tracers.centre_line import arc_lengths, point_at, resample, smooth
+from perception.cable.tracers.centre_line import (
+    arc_lengths,
+    bend_between,
+    point_at,
+    resample,
+    smooth,
+)
 from perception.cable.tracers.junctions import JunctionConfig, Junctions, find_junctions
 from perception.cable.tracers.transitions import (
     ThreadingConfig,
@@ -35,6 +41,7 @@ class SkeletonTracerConfig:
         junctions: How strands may go on where they meet.
         threading: The search over all junctions.
         cut_widths: The skeleton this near to a junction is bent by it and is left out.
+        direction_widths: Length of strand that gives its direction at a junction.
         smoothing_widths: Standard deviation of the smoothing along the centre line.
         start_widths: Farthest a start may lie from the cable.
         end_widths: Farthest an endpoint may lie from the trace that finishes at it.
@@ -45,6 +52,7 @@ class SkeletonTracerConfig:
     junctions: JunctionConfig = field(default_factory=JunctionConfig)
     threading: ThreadingConfig = field(default_factory=ThreadingConfig)
     cut_widths: float = 0.9
+    direction_widths: float = 1.2
     smoothing_widths: float = 0.6
     start_widths: float = 2.5
     end_widths: float = 2.0
@@ -178,12 +186,15 @@ class _Line:
             self._edge(arm, first=k == 0, offset_px=offset_px, last=k == len(arms) - 1)
             for k, arm in enumerate(arms)
         ]
-        rough = [pieces[0]]
+        rough, reach_px = [pieces[0]], self.config.direction_widths * self.mask.width_px
         for k in range(1, len(arms)):
             entered = (arms[k][0], 1 - arms[k][1])
-            rough.append(self._bridge(arms[k - 1], entered, rough[-1], pieces[k]))
-            rough.append(pieces[k])
-        line = np.concatenate([piece for piece in rough if len(piece)])
+            bundle = self._bridge(arms[k - 1], entered, rough[-1], pieces[k])
+            for piece in (bundle, pieces[k]):
+                if len(piece):
+                    rough.append(bend_between(rough[-1], piece, reach_px))
+                    rough.append(piece)
+        line = np.concatenate(rough)
         return smooth(line, self.config.smoothing_widths * self.mask.width_px)
 
     def _edge(self, arm: Arm, *, first: bool, offset_px: float, last: bool) -> Points:
