@@ -14,6 +14,9 @@ from executive.engine.library import Library, search_folders
 from executive.engine.outline import NodeSpec, TreeSpec
 from executive.engine.sources import Source
 
+MAX_DEPTH = 200
+"""How deep a tree may be: a tick goes through all of it in nested calls."""
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Program:
@@ -195,6 +198,10 @@ class _Loading:
         for spec in (tree, *self._subtrees.values()):
             if spec is not None:
                 self._faults += check_tree(spec, self._skills, self._subtrees)
+        if not self.faults and (depth := self._depth(tree.root)) > MAX_DEPTH:
+            self._faults.append(
+                tree.root.fault(f"{depth} nodes deep; expected {MAX_DEPTH} at most")
+            )
         subtrees = {name: spec for name, spec in self._subtrees.items() if spec is not None}
         return Program(tree, MappingProxyType(subtrees), self._skills, self.library.sources)
 
@@ -241,10 +248,18 @@ class _Loading:
 
     def _count(self, tree: TreeSpec) -> int:
         """Return how many nodes a tree has when its subtrees are put in."""
-        return sum(self._count_at(node) for node in tree.root.walk())
+        inside = [self._inside(node) for node in tree.root.walk()]
+        return sum(1 if inner is None else self._count(inner) for inner in inside)
 
-    def _count_at(self, node: NodeSpec) -> int:
+    def _depth(self, node: NodeSpec) -> int:
+        """Return how deep a tree is when its subtrees are put in."""
+        inner = self._inside(node)
+        if inner is not None:
+            return self._depth(inner.root)
+        return 1 + max((self._depth(child) for child in node.children), default=0)
+
+    def _inside(self, node: NodeSpec) -> TreeSpec | None:
+        """Return the tree that stands in the place of a node, if any."""
         if not isinstance(node.model, SubtreeNode):
-            return 1
-        inner = self._subtrees.get(node.model.subtree)
-        return self._count(inner) if inner else 1
+            return None
+        return self._subtrees.get(node.model.subtree)

@@ -20,6 +20,10 @@ from executive.core.errors import Fault
 YamlPath = tuple[str | int, ...]
 Mark = tuple[int, int]
 
+MAX_LEVELS = 250
+"""How deep mappings and lists may be nested in one file."""
+
+_TRY = "try a subtree for what is inside"
 _TAG = "tag:yaml.org,2002:"
 _PLAIN_TAGS = frozenset(_TAG + name for name in ("null", "bool", "int", "float", "str"))
 
@@ -104,6 +108,9 @@ class _Reading:
 
     def value(self, node: Node, path: YamlPath) -> object:
         mark = _mark(node)
+        if len(path) > MAX_LEVELS:
+            self.complain(node.start_mark, f"nested deeper than {MAX_LEVELS} levels; {_TRY}")
+            return None
         self.values[path] = mark
         self.keys.setdefault(path, mark)
         if isinstance(node, MappingNode):
@@ -163,7 +170,9 @@ def read_source(file: str, text: str) -> Source:
     except yaml.reader.ReaderError as error:
         line = text.count("\n", 0, error.position) + 1
         reading.faults.append(Fault(file, line, 1, "", f"not YAML: {error.reason}"))
-    except (RecursionError, ValueError) as error:
+    except RecursionError:
+        reading.faults.append(Fault(file, 1, 1, "", f"nested much too deeply; {_TRY}"))
+    except ValueError as error:  # a number of thousands of digits
         reading.faults.append(Fault(file, 1, 1, "", f"cannot be read: {error}"))
     return Source(file, text, data, reading.keys, reading.values, tuple(reading.faults))
 
