@@ -145,12 +145,13 @@ def _write_html(request: _Request, report: RunReport, console: Console) -> bool:
     """Write the replay if it is asked for; return whether nothing went wrong."""
     if request.html is None or report.recording is None:
         return True
-    from executive.app.views import write_html
-
     try:
+        from executive.app.views import write_html
+
+        request.html.parent.mkdir(parents=True, exist_ok=True)
         write_html(Path(report.recording), request.html)
-    except CellwrightError as error:
-        print_error(console, str(error))
+    except Exception as error:  # the run itself is over and recorded: its report is still wanted
+        _print_unexpected(console, error)
         return False
     console.print(f"replay: {request.html}")
     return True

@@ -80,7 +80,7 @@ class TreeProbe:
         faults = () if error is None else (fault_of(error),)
         return self._record(number, time_s, duration_s, outcomes, faults), error
 
-    def record_end(self, number: int, time_s: float, errors: Sequence[NodeError]) -> Tick:
+    def record_end(self, number: int, time_s: float, errors: Sequence[Exception]) -> Tick:
         """Return what the runner stopped since the last tick, as a tick without visits."""
         self._answers = {}
         return self._record(number, time_s, 0.0, [], tuple(fault_of(error) for error in errors))
@@ -184,12 +184,11 @@ def _raising_node(cause: BaseException, root: Behaviour) -> tuple[Behaviour, boo
     return found, terminating
 
 
-def fault_of(error: NodeError) -> NodeFault:
-    """Return the record of an error."""
-    cause = error.__cause__ or error
-    return NodeFault(
-        error.path,
-        error.node_type,
-        f"{type(cause).__name__}: {cause}",
-        "".join(traceback.format_exception(cause)),
-    )
+def fault_of(error: Exception) -> NodeFault:
+    """Return the record of an error; one of the cell or an observer has no path."""
+    cause: BaseException = error
+    path = node_type = ""
+    if isinstance(error, NodeError):
+        path, node_type, cause = error.path, error.node_type, error.__cause__ or error
+    text = "".join(traceback.format_exception(cause))
+    return NodeFault(path, node_type, f"{type(cause).__name__}: {cause}", text)

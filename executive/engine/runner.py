@@ -112,6 +112,7 @@ class Runner:
         self._start_s = self._clock.now_s()
         self._rate = Rate(tick_hz, self._start_s)
         self._number = 0
+        self._told: NodeError | None = None
 
     def run(self) -> RunResult:
         """Tick until the mission ends, whatever ends it; then stop everything.
@@ -122,7 +123,7 @@ class Runner:
         wall_start_s = time.perf_counter()
         ending = self._ending()
         ended_s = self._clock.now_s()
-        errors = ending.errors + self._stop_everything()
+        errors = self._stop_everything(ending.errors)
         if errors and not ending.errors and ending.outcome is not MissionOutcome.ABORTED:
             ending = replace(ending, outcome=MissionOutcome.ERROR, reason=one_line(errors[0]))
         return RunResult(
@@ -163,6 +164,7 @@ class Runner:
         self._rate.ticked(now_s, tick.duration_s)
         for observer in self._observers:
             observer.on_tick(tick)
+        self._told = error
         return _broken(error) if error is not None else self._answer()
 
     def _answer(self) -> _Ending | None:
@@ -204,17 +206,16 @@ class Runner:
         if self.control.wait_while_paused():
             self._rate.skip(self._clock.now_s() - began_s)
 
-    def _stop_everything(self) -> tuple[Exception, ...]:
-        """Stop nodes and cell, and tell the observers; return everything that was raised."""
-        cell_errors: list[Exception] = []
+    def _stop_everything(self, raised: tuple[Exception, ...]) -> tuple[Exception, ...]:
+        """Stop nodes and cell, and tell the observers; return all that was raised in the run."""
+        errors = list(raised)
         if self.control.emergency:
-            cell_errors += _raised_by(self._cell.emergency_stop)
-        stopped = stop_running(self._tree.root, self._probe.raised, self._error_of)
-        cell_errors += _raised_by(self._stop_cell)
-        shut_down = self._each_node(lambda node: node.shutdown())
-        node_errors = stopped + shut_down
-        told = _raised_by(lambda: self._tell_end(node_errors))
-        return (*node_errors, *cell_errors, *told)
+            errors += _raised_by(self._cell.emergency_stop)
+        errors += stop_running(self._tree.root, self._probe.raised, self._error_of)
+        errors += _raised_by(self._stop_cell)
+        errors += self._each_node(lambda node: node.shutdown())
+        errors += _raised_by(lambda: self._tell_end(errors))
+        return tuple(errors)
 
     def _stop_cell(self) -> None:
         try:
@@ -223,8 +224,9 @@ class Runner:
         except EmergencyStopped:
             self._cell.emergency_stop()
 
-    def _tell_end(self, errors: Sequence[NodeError]) -> None:
-        end = self._probe.record_end(self._number, self._clock.now_s(), errors)
+    def _tell_end(self, errors: Sequence[Exception]) -> None:
+        untold = [error for error in errors if error is not self._told]
+        end = self._probe.record_end(self._number, self._clock.now_s(), untold)
         if end.changes or end.writes or end.faults:
             for observer in self._observers:
                 observer.on_tick(end)

@@ -56,11 +56,11 @@ class NodeOutcome:
 
 @dataclass(frozen=True, slots=True)
 class NodeFault:
-    """A node raised.
+    """A node raised, or the cell, or an observer of the run.
 
     Attributes:
-        path: Path of the node.
-        node_type: Name of the skill or node class.
+        path: Path of the node; empty where it was no node.
+        node_type: Name of the skill or node class; empty where it was no node.
         message: Type and text of the exception.
         traceback: Where it was raised.
     """

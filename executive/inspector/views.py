@@ -53,7 +53,7 @@ def tick_view(recording: Recording, number: int, nodes: frozenset[int]) -> Rende
         tree_view(recording, number, nodes),
     ]
     for fault in tick.faults:
-        parts.append(Text(f"! {fault.path}: {fault.message}", "bold red"))
+        parts.append(Text(f"! {fault.path or 'cell'}: {fault.message}", "bold red"))
         parts.append(Text(fault.traceback, "bright_black"))
     board = blackboard_view(recording, number)
     return Group(*parts, *([board] if board is not None else []))

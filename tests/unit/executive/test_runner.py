@@ -10,6 +10,7 @@ from py_trees.composites import Parallel, Selector, Sequence
 from py_trees.decorators import Inverter
 from toy_runs import Leaf, Ticks, ToyCell, built
 
+from executive.core.clock import ManualClock
 from executive.core.errors import NodeError
 from executive.core.outcome import failure
 from executive.engine.control import RunControl, stopped_by_signals
@@ -178,9 +179,10 @@ def test_e4_setup_reports_every_failure_and_works_outside_the_main_thread():
     thread = threading.Thread(target=lambda: results.append(run(root)))
     thread.start()
     thread.join()
-    result, _, _ = results[0]
+    result, ticks, _ = results[0]
     assert result.outcome is MissionOutcome.ERROR
     assert [error.path for error in result.errors] == ["mission/camera", "mission/arm"]
+    assert [fault.message for fault in ticks[0].faults] == ["OSError: no camera", "OSError: no arm"]
     assert result.ticks == 0
 
 
@@ -236,6 +238,22 @@ def test_an_observer_that_raises_ends_the_run_with_the_arms_stopped():
     result, _, cell = run(leaf, observers=(Full(),))
     assert result.outcome is MissionOutcome.ERROR
     assert "disk full" in result.reason
+    assert leaf.terminations == [INVALID]
+    assert cell.calls == ["stop"]
+
+
+def test_a_cell_that_breaks_between_ticks_ends_the_run_and_is_recorded():
+    class BrokenClock(ManualClock):
+        def sleep_until(self, time_s):
+            raise OSError("no answer")
+
+    leaf = Leaf("work", RUNNING)
+    result, ticks, cell = run(leaf, ToyCell(clock=BrokenClock()))
+    assert result.outcome is MissionOutcome.ERROR
+    assert result.reason == "OSError: no answer"
+    assert [(fault.path, fault.message) for fault in ticks[-1].faults] == [
+        ("", "OSError: no answer")
+    ]
     assert leaf.terminations == [INVALID]
     assert cell.calls == ["stop"]
 
