@@ -77,8 +77,12 @@ class TableCell:
     def stop(self) -> None:
         """Bring the arms to rest by a jerk-limited stop; grippers keep what they hold."""
         self.driver.stop()
-        while self.driver.state().moving:
-            self.clock.sleep_until(self.clock.now_s() + 0.05)
+        self._come_to_rest()
+
+    def emergency_stop(self) -> None:
+        """Bring the arms to rest as fast as the brakes allow; grippers keep what they hold."""
+        self.driver.emergency_stop()
+        self._come_to_rest()
 
     def close(self) -> None:
         """Shut the physics server."""
@@ -87,6 +91,10 @@ class TableCell:
     def truth(self) -> CableTruth:
         """Score the cable as it lies now."""
         return cable_truth(self._world.rod.positions_m)
+
+    def _come_to_rest(self) -> None:
+        while self.driver.state().moving:
+            self.clock.sleep_until(self.clock.now_s() + self._world.step_s)
 
     def _advance(self, steps: int) -> None:
         while steps > 0:

@@ -6,9 +6,9 @@ projector's faint bands.
 
 from dataclasses import dataclass
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import gaussian_filter
 
 from perception.camera import CameraModel
 
@@ -49,7 +49,7 @@ def make_backdrop(
     cloth = _CLOTH * (1.0 + _weave(shape, rng) + _folds(points, beyond_m, rng))
     around = np.where(beyond_m < _HEM_M, _HANGING, _FLOOR * (1.0 + _planks(points, rng)))
     brightness = light * np.where(on_table, cloth, around)
-    brightness = gaussian_filter(brightness, 0.6)
+    brightness = _blurred(brightness, 0.6)
     height_m = camera.T_world_camera[2, 3]
     depth_m = np.where(on_table, height_m, height_m - FLOOR_HEIGHT_M)
     return Backdrop(
@@ -67,8 +67,17 @@ def _table_points(camera: CameraModel) -> Floats:
 
 def _smooth_noise(shape: tuple[int, int], sigma_px: float, rng: np.random.Generator) -> Floats:
     """Return noise of unit variance that changes over about `sigma_px`."""
-    noise = gaussian_filter(rng.standard_normal(shape), sigma_px, mode="wrap")
+    coarser = max(1, int(0.5 * sigma_px))
+    size = (shape[0] // coarser + 1, shape[1] // coarser + 1)
+    noise = _blurred(rng.standard_normal(size), sigma_px / coarser)
+    if coarser > 1:
+        noise = np.asarray(cv2.resize(noise, shape[::-1], None, 0, 0, cv2.INTER_CUBIC), np.float64)
+    noise = noise[: shape[0], : shape[1]]
     return noise / noise.std()
+
+
+def _blurred(image: Floats, sigma_px: float) -> Floats:
+    return np.asarray(cv2.GaussianBlur(image, (0, 0), sigma_px), np.float64)
 
 
 def _distance_beyond(
@@ -84,7 +93,7 @@ def _light(shape: tuple[int, int], rng: np.random.Generator) -> Floats:
     """Return the lamp's cone and its faint horizontal bands; 1 is full light."""
     v, u = np.mgrid[: shape[0], : shape[1]] / np.array(shape)[:, None, None]
     cone = 1.06 - 1.15 * (u - 0.42) ** 2 - 0.75 * (v - 0.58) ** 2
-    bands = gaussian_filter(rng.standard_normal(shape[0]), 12.0)
+    bands = _blurred(rng.standard_normal((shape[0], 1)), 12.0)[:, 0]
     band = np.exp(-0.5 * ((v - rng.uniform(0.5, 0.65)) / 0.025) ** 2)
     return cone * (1.0 + 0.015 * (bands / bands.std())[:, None] + 0.06 * band)
 
@@ -114,5 +123,5 @@ def _folds(points: Floats, beyond_m: Floats, rng: np.random.Generator) -> Floats
 
 def _planks(points: Floats, rng: np.random.Generator) -> Floats:
     """Return the grain of a wooden floor, along y."""
-    grain = _smooth_noise(points.shape[:2], 1.0, rng)
-    return 0.06 * gaussian_filter(grain, (12.0, 0.5)) / 0.15
+    grain = cv2.GaussianBlur(rng.standard_normal(points.shape[:2]), (0, 0), sigmaX=0.9, sigmaY=12.0)
+    return np.asarray(0.06 * grain / grain.std(), np.float64)

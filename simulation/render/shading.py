@@ -42,7 +42,7 @@ _BRAID_DEPTH = 0.34
 _THREAD_SPREAD = 0.22  # threads differ in brightness by up to this share
 
 # The sleeve's flanks send less light back to a lens beside the lamp than its ridge does.
-_FLANK, _LIMB_EXPONENT = 0.35, 3.0
+_FLANK, _LIMB_EXPONENT = 0.55, 2.0
 
 _BRAID, _METAL, _PAINT = int(Material.BRAID), int(Material.METAL), int(Material.PAINT)
 

@@ -10,7 +10,8 @@ from simulation.render.primitives import CAPSULE, Material, Primitives, boxes, c
 
 Floats = NDArray[np.float64]
 
-_CABLE_ALBEDO = 0.86
+_CABLE_ALBEDO = 0.84
+_VISIBLE_SHARE = 0.85  # of the sleeve's radius; the rest is fluff
 _PIECES_A_SEGMENT = 4  # the centre line is smoothed, so that bends show no corners
 
 # Parts of the plugs in the plug's frame: low and high corner [mm], albedo, material. The body
@@ -103,7 +104,7 @@ def _box(
 def _sleeve(nodes_m: Floats, radius_m: float) -> Primitives:
     line = smooth_line(nodes_m)
     arc_m = np.concatenate([[0.0], np.linalg.norm(np.diff(line, axis=0), axis=1).cumsum()])
-    radii_m = np.full(len(line) - 1, radius_m)
+    radii_m = np.full(len(line) - 1, _VISIBLE_SHARE * radius_m)
     sleeve = capsules(line[:-1], line[1:], radii_m, _CABLE_ALBEDO, Material.BRAID)
     return sleeve._replace(arc_m=np.column_stack([arc_m[:-1], arc_m[1:]]))
 

@@ -1,0 +1,55 @@
+import subprocess
+import sys
+
+import pytest
+
+from executive.core.errors import InputError
+from simulation.table_cell_config import TableCellConfig, TableScenario, read_settings
+
+
+def test_nothing_given_means_the_defaults():
+    assert read_settings(TableScenario, {}, "scenario").cable.knot == "overhand"
+    assert read_settings(TableCellConfig, {}, "cell").physics.step_hz == 240
+
+
+def test_a_scenario_names_the_knot_or_the_file():
+    scenario = read_settings(TableScenario, {"cable": {"knot": "none", "file": "a.json"}}, "s")
+    assert (scenario.cable.knot, scenario.cable.file) == ("none", "a.json")
+
+
+@pytest.mark.parametrize(
+    ("values", "message"),
+    [
+        ({"cabel": {}}, "scenario: cabel: unknown key; did you mean 'cable'? (known: cable)"),
+        (
+            {"cable": {"knots": "none"}},
+            "scenario: cable.knots: unknown key; did you mean 'knot'? (known: file, knot)",
+        ),
+        (
+            {"cable": {"knot": "granny"}},
+            "scenario: cable.knot: got 'granny'; expected 'overhand', 'figure_8' or 'none'",
+        ),
+    ],
+)
+def test_says_what_is_wrong_with_a_scenario(values, message):
+    with pytest.raises(InputError) as caught:
+        read_settings(TableScenario, values, "scenario")
+    assert str(caught.value) == message
+
+
+def test_says_everything_that_is_wrong_at_once():
+    values = {"camera": {"height_m": 0.1}, "physics": {"hz": 1}}
+    with pytest.raises(InputError) as caught:
+        read_settings(TableCellConfig, values, "cell")
+    first, second = str(caught.value).splitlines()
+    assert first.startswith("cell: camera.height_m: got 0.1;")
+    assert second.startswith("cell: physics.hz: unknown key;")
+
+
+def test_loads_no_heavy_library():
+    code = (
+        "import sys, simulation.table_cell_config; "
+        "heavy = {'numba', 'pybullet', 'pinocchio', 'cv2', 'scipy'} & set(sys.modules); "
+        "assert not heavy, heavy"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True)
