@@ -80,15 +80,24 @@ class Hand:
 
     def strand_path(self, strand: Strand, duration_s: float) -> tuple[Floats, Floats]:
         """Return where a strand is held at both ends of an advance, world frame."""
-        start = self.pose[:3, :3] @ strand.p_tcp_m + self.pose[:3, 3]
+        start = self._point(strand.p_tcp_m)
         end = self.next_pose[:3, :3] @ strand.closed_by(duration_s) + self.next_pose[:3, 3]
         return start, end
 
-    def arrive(self, duration_s: float) -> None:
-        """Take the pose and the closing that the advance ended with."""
+    def arrive(self, duration_s: float, nodes_m: Floats, tear_m: float) -> None:
+        """Take the pose and the closing that the advance ended with; lose what was torn out."""
         for strand in self.strands:
             strand.p_tcp_m = strand.closed_by(duration_s)
         self.pose = self.next_pose
+        self.strands = tuple(
+            strand
+            for strand in self.strands
+            if np.linalg.norm(self._point(strand.p_tcp_m) - point_on(nodes_m, strand.arc)) < tear_m
+        )
+
+    def _point(self, p_tcp_m: Floats) -> Floats:
+        point: Floats = self.pose[:3, :3] @ p_tcp_m + self.pose[:3, 3]
+        return point
 
 
 def point_on(nodes_m: Floats, arc: float) -> Floats:

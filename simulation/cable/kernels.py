@@ -20,7 +20,12 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 # A step never moves a contact by more than this, so that a deep overlap does not explode [m].
-LARGEST_PUSH_M = 0.0005
+LARGEST_PUSH_M = 0.004
+# From these tensions on, steps are split into two and into four [N].
+SHORTER_STEPS_N = 2.0
+SHORTEST_STEPS_N = 8.0
+# What is left of an earlier peak of tension after a step.
+PEAK_MEMORY = 0.995
 # Nodes are never faster than this [m/s]; arms move the cable at up to about 1 m/s.
 LARGEST_SPEED_M_S = 8.0
 # Segments this close along the chain are kept apart by bending, not by contact.
@@ -41,6 +46,7 @@ class Chain(NamedTuple):
     rest_lengths: Floats  # (N - 1,)
     bending_compliances: Floats  # (N,)
     tensions: Floats  # (N - 1,), mean over the last advance [N]
+    peak: Floats  # (1,), greatest tension of late [N]
     directions: Floats  # (N - 1, 3), scratch
     solution: Floats  # (N - 1,), scratch
     sweep: Floats  # (N - 1,), scratch
@@ -110,16 +116,31 @@ def advance(
     chain.tensions[:] = 0.0
     rings.force[:] = 0.0
     for step in range(steps):
-        done = (step + 1.0) / steps
-        _predict(chain, constants, step_s)
-        _bend(chain, constants, step_s, step % 2 == 0)
-        _stretch(chain, rings, constants, step_s, steps)
-        _refresh(chain, near, obstacles, constants, rings, done)
-        _touch_self(chain, near, constants)
-        _touch_obstacles(chain, near, obstacles, constants, done, 1.0 / steps)
-        _hold(chain, rings, constants, done, step_s, steps)
-        _rest_on_table(chain, constants)
-        _update_velocities(chain, step_s)
+        parts = _parts(chain.peak[0])
+        part_s, share = step_s / parts, 1.0 / (steps * parts)
+        for part in range(parts):
+            done = (step * parts + part + 1.0) * share
+            _predict(chain, constants, part_s)
+            _bend(chain, constants, part_s, part == step % 2)
+            _stretch(chain, rings, constants, part_s, share)
+            _refresh(chain, near, obstacles, constants, rings, done)
+            _touch_self(chain, near, constants)
+            _touch_obstacles(chain, near, obstacles, constants, done, share)
+            _hold(chain, rings, constants, done, part_s, share)
+            _rest_on_table(chain, constants)
+            _update_velocities(chain, part_s)
+
+
+@numba.njit(cache=True)
+def _parts(peak: float) -> int:
+    """Return into how many parts a step is split at that tension.
+
+    A contact bears what its nodes' mass times 1 / step^2 makes of an overlap; in a knot that
+    is pulled tight, strands would pass through each other without shorter steps.
+    """
+    if peak < SHORTER_STEPS_N:
+        return 1
+    return 2 if peak < SHORTEST_STEPS_N else 4
 
 
 @numba.njit(cache=True)
@@ -166,7 +187,7 @@ def _bend(chain: Chain, constants: Constants, step_s: float, forward: bool) -> N
 
 
 @numba.njit(cache=True)
-def _stretch(chain: Chain, rings: Rings, constants: Constants, step_s: float, steps: int) -> None:
+def _stretch(chain: Chain, rings: Rings, constants: Constants, step_s: float, share: float) -> None:
     """Restore all lengths at once.
 
     Nodes in a grasp move only along the cable here, so that the pull of a hand reaches the
@@ -176,6 +197,7 @@ def _stretch(chain: Chain, rings: Rings, constants: Constants, step_s: float, st
     diagonal, solution = chain.sweep, chain.solution
     count = len(g)
     compliance = constants.stretch_compliance / step_s**2
+    guided = _guided_nodes(rings, solution, constants.overload_force * step_s**2)
     for i in range(count):
         dx = x[i + 1, 0] - x[i, 0]
         dy = x[i + 1, 1] - x[i, 1]
@@ -191,7 +213,6 @@ def _stretch(chain: Chain, rings: Rings, constants: Constants, step_s: float, st
         coupling[i] = -w[i + 1] * (
             g[i, 0] * g[i + 1, 0] + g[i, 1] * g[i + 1, 1] + g[i, 2] * g[i + 1, 2]
         )
-    guided = _guided_nodes(rings, len(x))
     fixed = np.empty((len(guided), 3))
     along = np.empty((len(guided), 3))
     for r in range(len(guided)):
@@ -210,11 +231,15 @@ def _stretch(chain: Chain, rings: Rings, constants: Constants, step_s: float, st
     solution[count - 1] /= diagonal[count - 1]
     for i in range(count - 2, -1, -1):
         solution[i] = (solution[i] - coupling[i] * solution[i + 1]) / diagonal[i]
+    peak = PEAK_MEMORY * chain.peak[0]
     for i in range(count):
-        chain.tensions[i] += solution[i] / (step_s**2 * steps)
+        tension = solution[i] / step_s**2
+        chain.tensions[i] += tension * share
+        peak = max(peak, tension)
         for k in range(3):
             x[i, k] += w[i] * g[i, k] * solution[i]
             x[i + 1, k] -= w[i + 1] * g[i, k] * solution[i]
+    chain.peak[0] = peak
     for r in range(len(guided)):
         n = guided[r]
         moved = _dot(x[n] - fixed[r], along[r])
@@ -223,13 +248,13 @@ def _stretch(chain: Chain, rings: Rings, constants: Constants, step_s: float, st
 
 
 @numba.njit(cache=True)
-def _guided_nodes(rings: Rings, nodes: int) -> Ints:
-    """Return the inner node nearest to each ring, each node once."""
+def _guided_nodes(rings: Rings, pulls: Floats, overload: float) -> Ints:
+    """Return the inner node nearest to each ring that is not overloaded, each node once."""
     guided = np.empty(len(rings.arc), np.int64)
     count = 0
     for r in range(len(rings.arc)):
-        node = min(max(int(np.round(rings.arc[r])), 1), nodes - 2)
-        known = False
+        node = min(max(int(np.round(rings.arc[r])), 1), len(pulls) - 1)
+        known = max(pulls[node - 1], pulls[node]) > overload
         for other in range(count):
             known = known or guided[other] == node
         if not known:
@@ -473,7 +498,7 @@ def _touch_obstacles(
 
 @numba.njit(cache=True)
 def _hold(
-    chain: Chain, rings: Rings, constants: Constants, done: float, step_s: float, steps: int
+    chain: Chain, rings: Rings, constants: Constants, done: float, step_s: float, share: float
 ) -> None:
     """Keep each held point in its ring; along the cable only as far as friction goes."""
     x, w = chain.positions, chain.inverse_masses
@@ -505,7 +530,7 @@ def _hold(
                 stick = min(max(slip, -strongest), strongest)
             rings.arc[r] = arc
         total = -(push / aside * offset + stick * along) / weight
-        rings.force[r] += total / (step_s**2 * steps)
+        rings.force[r] += total * (share / step_s**2)
         for k in range(3):
             x[i, k] += w[i] * (1.0 - f) * total[k]
             x[i + 1, k] += w[i + 1] * f * total[k]

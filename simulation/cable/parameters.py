@@ -23,7 +23,8 @@ class RodParameters:
         friction_cage: Coulomb coefficient of cable sliding through a caging gripper.
         cage_clearance_m: How far the cable's centre line may lie off the centre of a cage.
         pinch_force_n: Tension at which the cable slips through a pinching gripper.
-        overload_force_n: Force at which a strand is torn out of any grasp sideways.
+        overload_force_n: Force that no grasp can exert on a strand.
+        tear_m: A strand this far from where the fingers should hold it has been torn out.
         table_size_m: Size of the table in x and y; its top is z = 0, its centre the origin.
         floor_height_m: Height of the floor beside the table.
         gravity_m_s2: Acceleration of free fall, downwards.
@@ -45,7 +46,8 @@ class RodParameters:
     friction_cage: float = 0.15
     cage_clearance_m: float = 0.002
     pinch_force_n: float = 15.0
-    overload_force_n: float = 60.0
+    overload_force_n: float = 30.0
+    tear_m: float = 0.02
     table_size_m: tuple[float, float] = (1.0, 0.75)
     floor_height_m: float = -0.75
     gravity_m_s2: float = 9.81

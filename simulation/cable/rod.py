@@ -200,7 +200,7 @@ class Rod:
         for (_, strand), arc, force in zip(strands, rings.arc, rings.force, strict=True):
             strand.arc, strand.force_n = float(arc), force
         for hand in self._hands.values():
-            hand.arrive(duration_s)
+            hand.arrive(duration_s, self._chain.positions, self.parameters.tear_m)
         self._capsules = self._next_capsules
         self._next_capsules = kernels.Obstacles(
             self._capsules.end, self._capsules.end, self._capsules.radii
@@ -245,6 +245,7 @@ def _chain(nodes_m: Floats, parameters: RodParameters) -> kernels.Chain:
         rest_lengths=lengths_m,
         bending_compliances=compliances,
         tensions=np.zeros(segments),
+        peak=np.zeros(1),
         directions=np.zeros((segments, 3)),
         solution=np.zeros(segments),
         sweep=np.zeros(segments),
