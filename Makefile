@@ -76,7 +76,9 @@ layers: setup ## Check who may import whom
 docs: setup ## Build the documentation into site/; a warning is an error
 	$(BIN)/sphinx-build --quiet --fail-on-warning --keep-going -j auto docs site
 
-pages: setup ## Write the generated pages of docs/ anew
+pages: setup ## Write the generated files anew: skills page, schema, URDF
+	$(BIN)/python -m executive.engine.schema
+	$(BIN)/python -m robots.descriptions
 	$(BIN)/python docs/skills_page.py > docs/skills.new
 	@mv docs/skills.new docs/skills.md
 

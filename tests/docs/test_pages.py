@@ -9,7 +9,11 @@ from pathlib import Path
 
 import pytest
 
+from executive.engine.document import KINDS
+
 ROOT = Path(__file__).parents[2]
+CELLWRIGHT = Path(sys.executable).with_name("cellwright")
+YAML = re.MULTILINE | re.DOTALL
 PAGES = sorted([*ROOT.glob("*.md"), *ROOT.glob("docs/**/*.md")])
 LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
 FENCED = re.compile(r"^```.*?^```$", re.MULTILINE | re.DOTALL)
@@ -63,6 +67,28 @@ def test_modules_to_run_exist(page):
     assert [name for name in named if importlib.util.find_spec(name) is None] == []
 
 
+def test_documents_in_pages_are_sound(tmp_path):
+    blocks = [
+        block
+        for page in PAGES
+        for block in re.findall(r"^```yaml\n(.*?)^```$", page.read_text(encoding="utf-8"), YAML)
+        if block.startswith("format:")
+    ]
+    assert blocks
+    for block in blocks:
+        name = re.search(r"^(?:tree|mission|cell): (\w+)$", block, re.MULTILINE)[1]
+        (tmp_path / f"{name}.yaml").write_text(block, encoding="utf-8")
+    checked = subprocess.run(
+        [CELLWRIGHT, "check", *tmp_path.iterdir()], capture_output=True, text=True, check=False
+    )
+    assert checked.returncode == 0, checked.stdout
+
+
+def test_the_page_on_trees_knows_every_kind_of_node():
+    page = (ROOT / "docs/trees.md").read_text(encoding="utf-8")
+    assert [kind for kind in KINDS if f"| `{kind}`" not in page and f", `{kind}`" not in page] == []
+
+
 def message_parts(heading: str) -> list[str]:
     """Return the words of a message that never differ; capitals stand for what does."""
     message = re.sub(r"'[A-Z]+'|\b[A-Z]+\b(?!_)", "\0", heading)
@@ -92,10 +118,9 @@ def test_generated_pages_are_current():
 
 def options_of(*command: str) -> set[str]:
     """Return the options that a command of `cellwright` lists in its help."""
-    cellwright = Path(sys.executable).with_name("cellwright")
     wide = {**os.environ, "COLUMNS": "200"}
     shown = subprocess.run(
-        [cellwright, *command, "--help"], capture_output=True, text=True, check=False, env=wide
+        [CELLWRIGHT, *command, "--help"], capture_output=True, text=True, check=False, env=wide
     )
     assert shown.returncode == 0, f"cellwright {' '.join(command)}: no such command"
     return set(re.findall(r"--[a-z-]+", shown.stdout))
