@@ -13,6 +13,7 @@ from executive.engine.document import KINDS
 
 ROOT = Path(__file__).parents[2]
 CELLWRIGHT = Path(sys.executable).with_name("cellwright")
+DECISION_2 = ROOT / "docs/decisions/0002-py-trees-underneath.md"
 YAML = re.MULTILINE | re.DOTALL
 PAGES = sorted([*ROOT.glob("*.md"), *ROOT.glob("docs/**/*.md")])
 LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
@@ -87,6 +88,14 @@ def test_documents_in_pages_are_sound(tmp_path):
 def test_the_page_on_trees_knows_every_kind_of_node():
     page = (ROOT / "docs/trees.md").read_text(encoding="utf-8")
     assert [kind for kind in KINDS if f"| `{kind}`" not in page and f", `{kind}`" not in page] == []
+
+
+def test_traps_that_comments_name_are_written_down():
+    listed = set(re.findall(r"^\| (e\d+) \|", DECISION_2.read_text(encoding="utf-8"), re.MULTILINE))
+    comments = "".join(path.read_text(encoding="utf-8") for path in ROOT.glob("executive/**/*.py"))
+    named = set(re.findall(r"\be\d+\b", " ".join(re.findall(r"\(traps? ([^)]*)\)", comments))))
+    assert named
+    assert named - listed == set()
 
 
 def message_parts(heading: str) -> list[str]:
