@@ -16,13 +16,7 @@ from robots.interfaces import (
 )
 from robots.motion.model import yumi_model
 from robots.motion.planner import MotionPlanner, PlannerSettings
-from robots.placement import PlanningScene, table_scene
-
-_HOME_RIGHT_DEG = (0.0, -52.0, -79.0, 13.0, 0.0, 25.0, 0.0)
-HOME_RAD: Floats = np.radians(
-    [sign * angle for sign, angle in zip((-1, 1, -1, 1, -1, 1, -1), _HOME_RIGHT_DEG, strict=True)]
-    + list(_HOME_RIGHT_DEG)
-)
+from robots.placement import HOME_RAD, PlanningScene, table_scene
 
 
 class PlannedDualArm:
@@ -119,7 +113,7 @@ class PlannedDualArm:
 
     def _note_state(self) -> Floats:
         state = self._driver.state()
-        self._planner.solver.set_openings(state.openings_m)
+        self._planner.observe(state.positions_rad, state.openings_m)
         return state.positions_rad
 
     def _rest(self) -> Floats | MotionFailure:

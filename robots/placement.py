@@ -6,11 +6,41 @@ World frame as in `robots.interfaces`: origin at the table's centre, z = 0 on it
 from dataclasses import dataclass
 from math import pi
 
+import numpy as np
+
 from robots.descriptions.model import Vec3
+from robots.interfaces import Floats
 
 TABLE_SIZE_M = (1.0, 0.75)
 # Thin enough that the robot's feet (their top is 40 mm below the table's surface) fit under it.
 TABLE_THICKNESS_M = 0.03
+
+
+# The ready pose: elbows out, hands beside the table. Seen from 1.2 m above the table's centre,
+# nothing of the robot shows above y = -0.33. The left arm is the right one mirrored.
+_HOME_RIGHT_DEG = np.array([0.0, -52.0, -79.0, 13.0, 0.0, 25.0, 0.0])
+_MIRROR = np.array([-1.0, 1.0, -1.0, 1.0, -1.0, 1.0, -1.0])
+HOME_RAD: Floats = np.radians(np.concatenate([_MIRROR * _HOME_RIGHT_DEG, _HOME_RIGHT_DEG]))
+
+
+@dataclass(frozen=True, slots=True)
+class Rectangle:
+    """Part of the table between two corners, in the world [m]."""
+
+    low_m: tuple[float, float]
+    high_m: tuple[float, float]
+
+    def contains(self, position_m: Floats) -> bool:
+        """Return whether the first two coordinates of a point lie in it."""
+        low, high = np.array(self.low_m), np.array(self.high_m)
+        return bool(np.all((position_m[:2] >= low) & (position_m[:2] <= high)))
+
+
+# Where grasps succeed at every yaw, from 6 cm above straight down to 8 mm, leaning up to 30
+# degrees: by one arm or the other, and by either arm. Measured with `robots.reach.reach_map`
+# every 5 cm.
+REACH_OF_ONE = Rectangle((-0.40, -0.20), (0.40, 0.15))
+REACH_OF_BOTH = Rectangle((-0.25, -0.15), (0.25, 0.10))
 
 
 @dataclass(frozen=True, slots=True)

@@ -92,10 +92,10 @@ class CollisionModel:
         )
         self._q = robot.complete(np.zeros(robot.size), {})
 
-    @property
-    def pair_count(self) -> int:
-        """Number of pairs of shapes that are checked."""
-        return len(self._geometry.collisionPairs)
+    def checked_bodies(self) -> set[tuple[str, str]]:
+        """Return the names of all pairs of bodies that are checked."""
+        names = self._body_names
+        return {(names[pair.first], names[pair.second]) for pair in self._geometry.collisionPairs}
 
     def set_openings(self, openings_m: Mapping[Arm, float]) -> None:
         """Take note of how far the grippers are open [m] in all later checks."""

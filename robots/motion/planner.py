@@ -67,11 +67,18 @@ class MotionPlanner:
         self._seed = seed
         self._requests = 0
 
+    def observe(self, positions_rad: Floats, openings_m: Mapping[Arm, float]) -> None:
+        """Take note of where the arms stand and how far grippers are open, for what follows.
+
+        What is too close where the arms stand may stay so, but get no closer.
+        """
+        self.solver.set_openings(openings_m)
+        self.solver.together.excuse(positions_rad)
+
     def to_goals(
         self, start_rad: Floats, goals: Mapping[Arm, TcpGoal]
     ) -> Trajectory | MotionFailure:
         """Plan to goals of some arms; the others stay where they are."""
-        self.solver.together.excuse(start_rad)
         found = self.solver.configurations(goals, start_rad, self.settings.goal_solutions)
         if isinstance(found, MotionFailure):
             return found
@@ -79,7 +86,6 @@ class MotionPlanner:
 
     def to_configuration(self, start_rad: Floats, end_rad: Floats) -> Trajectory | MotionFailure:
         """Plan to a configuration of all arms."""
-        self.solver.together.excuse(start_rad)
         pair = self.solver.together.colliding_pair(end_rad)
         if pair is not None:
             text = f"the configuration asked for collides: {' and '.join(pair)}"
@@ -90,7 +96,6 @@ class MotionPlanner:
         self, start_rad: Floats, displacements_m: Mapping[Arm, Floats]
     ) -> Trajectory | MotionFailure:
         """Plan straight tool motions in step, orientation kept."""
-        self.solver.together.excuse(start_rad)
         failures = []
         for lines in line_variants(self.robot, start_rad, displacements_m):
             answer = self._line(start_rad, displacements_m, lines)

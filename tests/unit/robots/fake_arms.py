@@ -1,6 +1,7 @@
 """Arms that are where they are told to be, the moment they are told."""
 
 import numpy as np
+import pytest
 
 from robots.interfaces import ARMS, ArmsState
 
@@ -23,7 +24,7 @@ class FakeArms:
         )
 
     def execute(self, trajectory):
-        assert trajectory.at(0.0)[0] == pytest_approx(self.positions_rad)
+        assert trajectory.at(0.0)[0] == pytest.approx(self.positions_rad, abs=1e-9)
         self.running = trajectory
         self.executed.append(trajectory)
 
@@ -45,9 +46,3 @@ class FakeArms:
 
     def emergency_stop(self):
         self.running = None
-
-
-def pytest_approx(values):
-    import pytest
-
-    return pytest.approx(values, abs=1e-9)

@@ -1,0 +1,89 @@
+"""Path search in toy spaces where the right answer is plain to see."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from robots.motion.path import RESOLUTION_M, PathSearch, RrtConnect, Space, shorten
+
+START, GOAL = np.array([-0.8, 0.0]), np.array([0.8, 0.0])
+
+
+def space(collides):
+    return Space(-np.ones(2), np.ones(2), np.ones(2), collides)
+
+
+def wall_with_a_gap(q):
+    return abs(q[0]) < 0.1 and q[1] < 0.7
+
+
+def walled_in(q):
+    return 0.2 < np.linalg.norm(q - GOAL) < 0.4
+
+
+def search(collides, checks=20_000, seed=0):
+    return PathSearch(space(collides), np.random.default_rng(seed), checks, 3)
+
+
+def densely_free(path, collides):
+    for a, b in pairwise(path):
+        count = int(np.abs(b - a).sum() / 0.005) + 2
+        if any(collides(q) for q in np.linspace(a, b, count)):
+            return False
+    return True
+
+
+def test_a_free_straight_edge_is_taken():
+    path = next(search(lambda q: False).paths(START, [GOAL]))
+    assert np.array_equal(path, [START, GOAL])
+
+
+def test_of_several_ends_a_straight_one_is_taken_before_any_search():
+    other = np.array([-0.8, 0.5])
+    path = next(search(wall_with_a_gap).paths(START, [GOAL, other]))
+    assert np.array_equal(path, [START, other])
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_a_way_round_is_found_from_start_to_goal(seed):
+    path = next(search(wall_with_a_gap, seed=seed).paths(START, [GOAL]))
+    assert np.array_equal(path[0], START)
+    assert np.array_equal(path[-1], GOAL)
+    assert densely_free(path, lambda q: abs(q[0]) < 0.1 - RESOLUTION_M and q[1] < 0.68)
+
+
+def test_the_same_seed_finds_the_same_path():
+    first, second = (next(search(wall_with_a_gap, seed=3).paths(START, [GOAL])) for _ in range(2))
+    assert np.array_equal(first, second)
+
+
+def test_where_there_is_no_path_the_search_ends_with_its_checks():
+    count = 0
+
+    def counting(q):
+        nonlocal count
+        count += 1
+        return walled_in(q)
+
+    tree = RrtConnect(space(counting), np.random.default_rng(0), 2000)
+    assert tree.path(START, GOAL) is None
+    assert count <= 2000 + 200
+
+
+def test_edges_are_checked_as_densely_as_promised():
+    seen = []
+    space(lambda q: bool(seen.append(q))).edge_is_free(START, GOAL)
+    ordered = sorted(float(q[0]) for q in [START, *seen])
+    assert max(np.diff(ordered)) <= RESOLUTION_M + 1e-12
+    assert ordered[-1] == GOAL[0]
+    assert len(set(ordered)) == len(ordered)
+
+
+def test_shortening_keeps_the_ends_and_only_removes_waypoints():
+    path = [START, np.array([-0.4, 0.9]), np.array([0.0, 0.9]), np.array([0.4, 0.9]), GOAL]
+    short = shorten(path, space(wall_with_a_gap), np.random.default_rng(0), 50)
+    assert 3 <= len(short) < len(path)
+    assert short[0] is START
+    assert short[-1] is GOAL
+    assert all(any(q is old for old in path) for q in short)
