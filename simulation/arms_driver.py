@@ -34,8 +34,8 @@ class SimArmsDriver:
             now_s: Tells the time.
             limits: Of a stop.
         """
-        self._body, self._rod, self._now_s, self._limits = body, rod, now_s, limits
-        self._grippers: dict[Arm, Gripper] = {arm: Gripper(arm) for arm in ARMS}
+        self._body, self._now_s, self._limits = body, now_s, limits
+        self._grippers: dict[Arm, Gripper] = {arm: Gripper(arm, rod) for arm in ARMS}
         self._mode: _Mode = "rest"
         self._trajectory: Trajectory | None = None
         self._elapsed_s = 0.0
@@ -93,7 +93,7 @@ class SimArmsDriver:
 
     def grip(self, arm: Arm, grip: Grip) -> None:
         """Start opening or closing a gripper; a closing one takes what is between its fingers."""
-        self._grippers[arm].command(grip, self._rod)
+        self._grippers[arm].command(grip)
 
     def gripping(self, arm: Arm) -> bool:
         """Return whether the fingers are still on their way."""
@@ -101,7 +101,7 @@ class SimArmsDriver:
 
     def holds(self, arm: Arm) -> bool:
         """Return whether something is between the closed fingers."""
-        return self._grippers[arm].closed_on > 0
+        return self._grippers[arm].strands > 0
 
     def stop(self) -> None:
         """Bring all joints to rest within their jerk limits; fingers finish what they began."""

@@ -4,9 +4,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robots.descriptions import DESCRIPTIONS
-from robots.dual_arm import HOME_RAD
 from robots.interfaces import ARMS
 from robots.limits import yumi_limits
+from robots.placement import HOME_RAD
 from simulation.arms_driver import SimArmsDriver
 from simulation.cable.rod import Rod
 from simulation.cable_obstacles import CableObstacles

@@ -5,10 +5,10 @@ import pytest
 
 from executive.core.errors import DeviceError
 from robots.descriptions.yumi import FINGER_SPEED_M_S
-from robots.dual_arm import HOME_RAD
 from robots.interfaces import ARMS, ArmsDriver
 from robots.limits import yumi_limits
 from robots.motion.timing import rest_to_rest
+from robots.placement import HOME_RAD
 from simulation.table_world import TableWorld
 
 LIMITS = yumi_limits()

@@ -1,12 +1,11 @@
 import numpy as np
 import pytest
 
-from robots.dual_arm import HOME_RAD
 from robots.interfaces import ARMS
 from robots.limits import yumi_limits
 from robots.motion.model import yumi_model
 from robots.motion.timing import rest_to_rest
-from robots.placement import YUMI_AT_TABLE
+from robots.placement import HOME_RAD, YUMI_AT_TABLE
 from simulation.poses import pose_matrices
 from simulation.yumi_body import YumiBody
 
