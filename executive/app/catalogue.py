@@ -20,12 +20,14 @@ from perception.cable.types import (
     TraceStart,
 )
 from perception.camera import CameraFrame
+from skills.cable.account_for_cable import AccountForCable
 from skills.cable.classify_crossings import ClassifyCrossings
 from skills.cable.detect_endpoints import DetectEndpoints
 from skills.cable.dilate_knot import DilateKnot
 from skills.cable.find_knots import FindKnots
 from skills.cable.find_start_points import FindStartPoints
 from skills.cable.observe_workspace import ObserveWorkspace
+from skills.cable.orient_trace import OrientTrace
 from skills.cable.perturb_endpoint import PerturbEndpoint
 from skills.cable.perturb_trace import PerturbTrace
 from skills.cable.pull_in import PullIn
@@ -35,6 +37,7 @@ from skills.cable.trace_cable import TraceCable
 from skills.motion.go_home import GoHome
 
 _SKILLS: dict[str, type[Skill]] = {
+    "account_for_cable": AccountForCable,
     "classify_crossings": ClassifyCrossings,
     "detect_endpoints": DetectEndpoints,
     "dilate_knot": DilateKnot,
@@ -42,6 +45,7 @@ _SKILLS: dict[str, type[Skill]] = {
     "find_start_points": FindStartPoints,
     "go_home": GoHome,
     "observe_workspace": ObserveWorkspace,
+    "orient_trace": OrientTrace,
     "perturb_endpoint": PerturbEndpoint,
     "perturb_trace": PerturbTrace,
     "pull_in": PullIn,

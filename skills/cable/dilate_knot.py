@@ -29,6 +29,8 @@ LIFT_M = 0.03
 REACH_X_M = 0.38
 REACH_Y_M = (-0.20, 0.17)
 MOST_PAIRS = 60
+# Where the whole way apart is out of reach, these parts of it are tried in turn.
+SHARES_OF_TRAVEL = (1.0, 0.8, 0.6, 0.4, 0.2)
 # Only weighs arc lengths against crowding; the real length may differ.
 CABLE_LENGTH_M = 3.0
 
@@ -58,7 +60,7 @@ class DilateKnot(Skill):
         trace: Annotated[Trace, In("path of the cable")],
         crossings: Annotated[tuple[Crossing, ...], In("crossings of the trace")],
         knots: Annotated[tuple[Knot, ...], In("knots of the trace")],
-        separation_m: Annotated[float, In("how far apart the hands end", "m")] = 0.6,
+        travel_m: Annotated[float, In("how much farther apart the hands move", "m")] = 0.5,
     ) -> SkillRun:
         """Take hold with both hands, lift, pull apart, lay down, rise."""
         if not knots:
@@ -68,7 +70,7 @@ class DilateKnot(Skill):
             return failure(hands.code, hands.text, stage=hands.stage)
         yield from set_grips(self._arms, {hands[0]: "cage", hands[1]: "pinch"})
         missed = [arm for arm in hands if not self._arms.holds(arm)]
-        failed = None if missed else (yield from self._pull_apart(hands, separation_m))
+        failed = None if missed else (yield from self._pull_apart(hands, travel_m))
         risen = yield from release(self._arms, hands, CLEARANCE_M)
         if missed:
             return failure("grasp.missed", f"closed on nothing: {', '.join(missed)}")
@@ -93,7 +95,7 @@ class DilateKnot(Skill):
         failed = MotionFailure(
             "motion.unreachable", "ik", "no two sites around the knot are apart and in reach"
         )
-        for cage, pinch in ranked_pairs(cages, pinches, frame)[:MOST_PAIRS]:
+        for cage, pinch in ranked_pairs(cages, pinches, knot, frame)[:MOST_PAIRS]:
             goals = (_goal(frame, cage), _goal(frame, pinch))
             hands = self._arms.assign((above(goals[0], CLEARANCE_M), above(goals[1], CLEARANCE_M)))
             if isinstance(hands, MotionFailure):
@@ -107,7 +109,7 @@ class DilateKnot(Skill):
             failed = blocked
         return failed
 
-    def _pull_apart(self, hands: tuple[Arm, Arm], separation_m: float) -> MotionSteps:
+    def _pull_apart(self, hands: tuple[Arm, Arm], travel_m: float) -> MotionSteps:
         """Lift, move apart as far as asked or as far as the arms reach, lay down."""
         up_m = np.array([0.0, 0.0, LIFT_M])
         failed = yield from move_by(self._arms, dict.fromkeys(hands, up_m))
@@ -115,8 +117,9 @@ class DilateKnot(Skill):
             return failed
         tips_m = {arm: self._arms.tcp_position(arm) for arm in hands}
         present_m = float(np.linalg.norm(tips_m["left"] - tips_m["right"]))
-        for span_m in np.linspace(separation_m, present_m, 6)[:-1]:
-            failed = yield from move_by(self._arms, apart(tips_m, float(span_m)))
+        for share in SHARES_OF_TRAVEL:
+            span_m = min(present_m + share * travel_m, 2.0 * REACH_X_M)
+            failed = yield from move_by(self._arms, apart(tips_m, span_m))
             if failed is None:
                 break
         laid = yield from move_by(self._arms, dict.fromkeys(hands, -up_m))
@@ -124,18 +127,20 @@ class DilateKnot(Skill):
 
 
 def ranked_pairs(
-    cages: Sequence[GraspSite], pinches: Sequence[GraspSite], frame: CameraFrame
+    cages: Sequence[GraspSite], pinches: Sequence[GraspSite], knot: Knot, frame: CameraFrame
 ) -> list[tuple[GraspSite, GraspSite]]:
     """Return pairs of sites that leave room for two hands, best first.
 
-    What is drawn out of the knot is the final separation less the cable that already lies
-    between the hands, so short pieces come first; a crowded site costs as much as 20 cm.
+    A pinch beyond the knot would tighten it, so that is the last resort. What is drawn out of
+    the knot is the final separation less the cable that already lies between the hands, so
+    short pieces come first. A crowded site costs more than a long piece.
     """
 
     def cost_m(pair: tuple[GraspSite, GraspSite]) -> float:
+        beyond_m = max(0.0, pair[1].arc - knot.interval[1]) * CABLE_LENGTH_M
         between_m = abs(pair[1].arc - pair[0].arc) * CABLE_LENGTH_M
         crowding = sum(max(0.0, 1.0 - site.room_px / SIDE_ROOM_PX) for site in pair)
-        return between_m + 0.4 * crowding
+        return 5.0 * beyond_m + 0.3 * between_m + 0.4 * crowding
 
     spots_m = {id(site): _spot_m(frame, site) for site in (*cages, *pinches)}
     roomy = [
