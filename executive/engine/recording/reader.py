@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import BinaryIO
 
 from mcap.exceptions import McapError
-from mcap.reader import McapReader, NonSeekingReader, SeekingReader
+from mcap.reader import NonSeekingReader, SeekingReader
 from mcap.records import Channel, Message, Schema
 from pydantic import ValidationError
 from zstandard import ZstdError
@@ -30,7 +30,11 @@ from executive.engine.recording.messages import (
 from executive.engine.ticks import NodeOutcome, NodeStatus, Tick
 
 _OWN_TOPICS = (MISSION_TOPIC, TICKS_TOPIC, RESULT_TOPIC)
-_BROKEN = (McapError, ZstdError, struct.error, EOFError)
+# What the MCAP library raises over bytes that are not as they were written.
+_BROKEN = (
+    *(McapError, ZstdError, struct.error, EOFError),
+    *(ValueError, KeyError, MemoryError, OverflowError),
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,8 +99,13 @@ class Recording:
         """
         found: dict[str, list[bytes]] = {topic: [] for topic in _OWN_TOPICS}
         reading = _Reading(path)
+        in_order = True
         for _, channel, message in reading.messages(_OWN_TOPICS):
-            found[channel.topic].append(message.data)
+            messages = found[channel.topic]
+            # A damaged index can shuffle chunks: what comes after a gap is not to be trusted.
+            in_order &= channel.topic != TICKS_TOPIC or message.sequence == len(messages)
+            if in_order:
+                messages.append(message.data)
         if not found[MISSION_TOPIC]:
             raise _no_recording(path, "no /mission message")
         try:
@@ -105,7 +114,11 @@ class Recording:
         except ValidationError as cause:
             raise _no_recording(path, str(cause.errors()[0]["msg"])) from cause
         return cls(
-            path, header, found[TICKS_TOPIC], results[-1] if results else None, reading.complete
+            path,
+            header,
+            found[TICKS_TOPIC],
+            results[-1] if results else None,
+            reading.complete and in_order,
         )
 
     def __len__(self) -> int:
@@ -219,7 +232,7 @@ class _Reading:
         """Return messages in file order, up to where the file is broken."""
         try:
             with self._path.open("rb") as file:
-                yield from _reader_of(file).iter_messages(topics, log_time_order=False)
+                yield from _messages_of(file, topics)
             self.complete = True
         except OSError as cause:
             raise _no_recording(self._path, cause.strerror or str(cause)) from cause
@@ -227,16 +240,21 @@ class _Reading:
             return
 
 
-def _reader_of(file: BinaryIO) -> McapReader:
-    """Return a reader that uses the index, or one that does without when it is missing."""
+def _messages_of(
+    file: BinaryIO, topics: Sequence[str] | None
+) -> Iterator[tuple[Schema | None, Channel, Message]]:
+    """Return messages with the help of the index, or one after another where there is none."""
     try:
-        reader = SeekingReader(file)
-        if reader.get_summary() is not None:
-            return reader
+        reader = SeekingReader(file, validate_crcs=True)
+        indexed = reader.get_summary() is not None
     except _BROKEN:
-        pass
+        indexed = False
+    if indexed:
+        # In the order of time, which is that of writing; without it all chunks would be
+        # unpacked before the first message comes out.
+        return reader.iter_messages(topics, log_time_order=True)
     file.seek(0)
-    return NonSeekingReader(file)
+    return NonSeekingReader(file, validate_crcs=True).iter_messages(topics, log_time_order=False)
 
 
 def _no_recording(path: Path, got: str) -> RecordingError:

@@ -130,6 +130,25 @@ def test_every_cut_of_the_file_gives_a_prefix_of_its_ticks(tmp_path):
     assert seen[-1] == len(live)
 
 
+def test_a_damaged_file_gives_a_prefix_or_a_clear_error_and_never_a_wrong_tick(tmp_path):
+    recording, live = record(tmp_path / "whole.mcap", busy_tree())
+    data, rng = recording.path.read_bytes(), np.random.default_rng(0)
+    damaged = tmp_path / "damaged.mcap"
+    lengths = []
+    for _ in range(40):
+        changed = bytearray(data)
+        changed[rng.integers(len(data))] ^= 1 << rng.integers(8)
+        damaged.write_bytes(changed)
+        try:
+            part = Recording.open(damaged)
+        except RecordingError:
+            continue
+        assert list(part.ticks()) == live[: len(part)]
+        lengths.append(len(part))
+    assert len(live) in lengths
+    assert any(0 < length < len(live) for length in lengths)
+
+
 @pytest.mark.parametrize("content", [b"", b"no recording", None])
 def test_a_file_that_is_no_recording_is_refused_with_a_hint(tmp_path, content):
     path = tmp_path / "x.mcap"

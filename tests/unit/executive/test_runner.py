@@ -14,6 +14,7 @@ from executive.core.clock import ManualClock
 from executive.core.errors import NodeError
 from executive.core.outcome import failure
 from executive.engine.control import RunControl, stopped_by_signals
+from executive.engine.decorators import Timeout
 from executive.engine.runner import MissionOutcome, Runner
 from executive.engine.ticks import RUNNER, Halt, NodeStatus
 
@@ -82,6 +83,16 @@ def test_failure_names_the_leaf_that_decided_and_its_reason():
 def test_a_decorator_that_turns_the_answer_is_followed_to_its_child():
     result, _, _ = run(Inverter("not", Leaf("alarm", SUCCESS)))
     assert result.reason == "not/alarm: success"
+
+
+def test_a_decorator_that_answers_by_itself_is_the_cause_and_is_recorded():
+    cell = ToyCell()
+    work = Leaf("work", RUNNING)
+    result, ticks, _ = run(Timeout("limit", work, seconds=0.25, clock=cell.clock), cell)
+    assert result.reason == "limit: timeout: not done after 0.25 s"
+    assert [outcome.reason.code for outcome in ticks[-1].outcomes] == ["timeout"]
+    assert ticks[-1].halts == (Halt(1, 0),)
+    assert work.terminations == [INVALID]
 
 
 def test_e1_an_exception_stops_every_running_leaf_once_and_names_its_node():
