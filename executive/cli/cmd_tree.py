@@ -43,7 +43,7 @@ def dot(file: _TreeName) -> None:
     ids = {id(node): f"n{i}" for i, node in enumerate(root.walk())}
     lines = [f"digraph {program.tree.name} {{", '  node [fontname="sans-serif", fontsize=10];']
     for node in root.walk():
-        text = _escaped("\n".join([f"{node.kind} {node.name}", *node.details]))
+        text = _escaped("\n".join([f"{_kind(node)}{node.name}", *node.details]))
         shape = _SHAPES.get(node.kind, "box")
         lines.append(f'  {ids[id(node)]} [label="{text}", shape={shape}];')
     lines += [
@@ -64,10 +64,14 @@ def _header(program: Program) -> list[str]:
     return lines
 
 
+def _kind(node: ExpandedNode) -> str:
+    """Return the kind as it stands before a name; a skill's own name is enough."""
+    return "" if node.kind in ("skill", node.name) else f"{node.kind} "
+
+
 def _line(node: ExpandedNode) -> Text:
-    kind = "" if node.kind == "skill" else f"{node.kind} "
     details = f"  {'; '.join(node.details)}" if node.details else ""
-    return Text.assemble((kind, "cyan"), (node.name, "bold"), (details, "dim"))
+    return Text.assemble((_kind(node), "cyan"), (node.name, "bold"), (details, "dim"))
 
 
 def _escaped(text: str) -> str:

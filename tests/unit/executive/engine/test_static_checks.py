@@ -1,6 +1,10 @@
 """What is known to be wrong with a tree before its first tick."""
 
 import pytest
+from toy_language import toy_skills, toy_types
+
+from executive.core.errors import DocumentError
+from executive.engine.loader import load_program
 
 FIND = "{skill: find, out: {part: $p, distance: $d}}"
 
@@ -143,10 +147,6 @@ def test_all_faults_of_a_tree_come_in_one_pass_with_line_and_column(bench):
           - {skill: sort, in: {colour: gren}}
         """
     )
-    from toy_language import toy_skills, toy_types
-
-    from executive.core.errors import DocumentError
-    from executive.engine.loader import load_program
 
     with pytest.raises(DocumentError) as found:
         load_program(file, skills=toy_skills(), types=toy_types())

@@ -1,8 +1,10 @@
 """Trees inside trees: ports, scopes and names."""
 
 import pytest
+from toy_language import toy_skills, toy_types
 
 from executive.core.errors import InputError
+from executive.engine.loader import load_program
 
 INNER = """
 format: 1
@@ -122,9 +124,6 @@ def test_default_of_an_outer_input_reaches_a_subtree(inner):
 
 
 def test_subtrees_are_found_beside_in_sibling_folders_and_in_search_paths(tmp_path, bench):
-    from toy_language import toy_skills, toy_types
-
-    from executive.engine.loader import load_program
 
     for folder in ("cell/missions", "cell/subtrees", "more"):
         (tmp_path / folder).mkdir(parents=True)

@@ -3,6 +3,7 @@
 import json
 
 import pytest
+from toy_language import toy_skills
 from typer.testing import CliRunner
 
 from executive.cli.main import app
@@ -10,6 +11,32 @@ from executive.engine.document import KINDS
 from executive.engine.library import packaged_trees
 from executive.engine.schema import SCHEMA_FILE, schema_text
 
+SKILLS = {"cmd_check": "skills", "cmd_tree": "skills", "cmd_skills": "shipped_skills"}
+OUTER = """
+format: 1
+tree: outer
+about: Weigh.
+in: {factor: {type: float, default: 2, unit: m, about: scale}}
+out: {mass: {type: float, unit: kg}}
+root:
+  sequence:
+    - {skill: find, out: {part: $p}}
+    - retry:
+        name: again
+        times: 3
+        delay_s: 0.5
+        child: {subtree: inner, in: {part: $p, factor: $factor}, out: {mass: $mass}}
+    - {when: mass > 1, unless: factor > 9}
+"""
+INNER = """
+format: 1
+tree: inner
+in: {part: {type: any}, factor: {type: float}}
+out: {mass: {type: float}}
+root:
+  sequence:
+    - {skill: weigh, name: reading, in: {part: $part, factor: $factor}, out: {mass: $mass}}
+"""
 BROKEN = "format: 1\ntree: broken\nroot: {skill: find_knot}\n"
 
 
@@ -43,24 +70,54 @@ def test_check_speaks_json(cellwright, tmp_path):
     assert (fault["line"], fault["column"], fault["node"]) == (3, 15, "broken")
 
 
-def test_tree_show_puts_subtrees_in(cellwright):
-    lines = cellwright("tree", "show", "untangle").stdout.splitlines()
-    assert lines[1].startswith("  in  confidence: float = 0.95")
-    assert any("subtree look_and_act; in $confidence; out $claim" in line for line in lines)
-    assert any("trace_cable  in $frame" in line for line in lines)
+@pytest.fixture
+def toy_file(tmp_path, monkeypatch):
+    """Return a tree with a subtree, for a command line that knows the toy skills alone."""
+    for module in ("cmd_check", "cmd_tree", "cmd_skills"):
+        monkeypatch.setattr(f"executive.cli.{module}.{SKILLS[module]}", toy_skills)
+    (tmp_path / "inner.yaml").write_text(INNER)
+    (tmp_path / "outer.yaml").write_text(OUTER)
+    return tmp_path / "outer.yaml"
 
 
-def test_tree_dot_has_a_node_and_an_edge_for_each_but_the_root(cellwright):
-    text = cellwright("tree", "dot", "untangle").stdout
-    assert text.startswith("digraph untangle {")
-    assert text.count("[label=") == text.count(" -> n") + 1
+def test_tree_show_puts_subtrees_in(cellwright, toy_file):
+    assert cellwright("tree", "show", toy_file).stdout.splitlines() == [
+        "outer: Weigh.",
+        "  in  factor: float [m] = 2.0  scale",
+        "  out mass: float [kg]",
+        "sequence outer",
+        "├── find  out part: $p",
+        "├── retry again  times 3; delay_s 0.5",
+        "│   └── sequence inner  subtree inner; in part: $p, $factor; out $mass",
+        "│       └── reading  skill weigh; in $part, $factor; out $mass",
+        "└── when  mass > 1; unless factor > 9",
+    ]
 
 
-def test_skills_are_listed_with_ports_units_and_reasons(cellwright):
-    text = cellwright("skills", "dilate_knot").stdout
-    assert text.startswith("dilate_knot (acts): ")
-    assert "separation_m: float [m] = " in text
-    assert "fails with " in text
+def test_tree_dot_has_a_node_and_an_edge_for_each_but_the_root(cellwright, toy_file):
+    text = cellwright("tree", "dot", toy_file).stdout
+    assert text.startswith("digraph outer {")
+    assert text.count("[label=") == 6
+    assert text.count(" -> n") == 5
+
+
+def test_check_counts_the_nodes_with_those_of_subtrees(cellwright, toy_file):
+    result = cellwright("check", toy_file)
+    assert result.stdout == f"{toy_file}: ok: tree outer, 6 nodes\n"
+
+
+def test_skills_are_listed_with_ports_units_and_reasons(cellwright, toy_file):
+    assert cellwright("skills", "work").stdout.splitlines() == [
+        "work (acts): Answer after some ticks, and note start, end and stop.",
+        "  in  label: str",
+        "  in  ticks: int = 1",
+        "  in  fails: int = 0",
+        "  in  raises: bool = False",
+        "  out label: str",
+        "  fails with work.failed",
+        "  needs journal: Journal",
+    ]
+    assert "  in  factor: float [m] = 1.0  scale" in cellwright("skills").stdout
 
 
 def test_skills_speak_json(cellwright):
@@ -72,8 +129,8 @@ def test_skills_speak_json(cellwright):
 
 
 def test_unknown_skill_is_answered(cellwright):
-    result = cellwright("skills", "dilate_not")
-    assert "did you mean 'dilate_knot'?" in str(result.exception)
+    result = cellwright("skills", "go_hom")
+    assert "did you mean 'go_home'?" in str(result.exception)
 
 
 def test_schema_file_is_that_of_the_models():

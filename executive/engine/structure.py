@@ -1,0 +1,47 @@
+"""What a tree says about its nodes themselves: skills, names, policies."""
+
+from collections import Counter
+from collections.abc import Iterator
+
+from executive.core.errors import Fault
+from executive.core.registry import Registry, closest
+from executive.core.skill import Skill
+from executive.engine.document import BlockBody, ParallelBody, SkillNode
+from executive.engine.outline import NodeSpec, TreeSpec
+
+
+def structural_faults(tree: TreeSpec, skills: Registry[type[Skill]]) -> Iterator[Fault]:
+    """Yield what is wrong with the nodes of a tree, whatever they read and write."""
+    root = tree.root
+    if root.model.name not in (None, tree.name):
+        message = f"the root is named after its tree, {tree.name!r}; drop the name"
+        yield root.fault(message, "name")
+    for node in root.walk():
+        model = node.model
+        if isinstance(model, SkillNode) and model.skill not in skills:
+            message = f"unknown skill {model.skill!r}; {closest(model.skill, [*skills])}"
+            yield node.fault(message, "skill")
+        if isinstance(model, BlockBody):
+            yield from _sibling_faults(node)
+        if isinstance(model, ParallelBody):
+            yield from _policy_faults(node, model)
+
+
+def _sibling_faults(node: NodeSpec) -> Iterator[Fault]:
+    counts = Counter(child.name for child in node.children)
+    for child in node.children:
+        if counts[child.name] > 1:
+            message = f"another child of {node.name!r} is named {child.name!r} too"
+            yield child.fault(message, "name")
+
+
+def _policy_faults(node: NodeSpec, model: ParallelBody) -> Iterator[Fault]:
+    names = [child.name for child in node.children]
+    for policy, value in (("succeed", model.succeed), ("fail", model.fail)):
+        if isinstance(value, int) and value > len(names):
+            message = f"{policy}: expected at most {len(names)}, the number of children"
+            yield node.fault(f"{message}; got {value}", policy)
+    for name in model.succeed if isinstance(model.succeed, tuple) else ():
+        if name not in names:
+            message = f"succeed: no child is named {name!r}; {closest(name, names)}"
+            yield node.fault(message, "succeed")
