@@ -50,9 +50,11 @@ class SimArmsDriver:
     def advance(self, duration_s: float) -> None:
         """Send the body where it has to be `duration_s` from now."""
         if self._trajectory is not None:
+            # The step after the last one takes out the speed with which the end was reached.
+            ended = self._elapsed_s >= self._trajectory.duration_s
             self._elapsed_s += duration_s
             self._target_rad, _, self._acceleration = self._trajectory.at(self._elapsed_s)
-            if self._elapsed_s >= self._trajectory.duration_s:
+            if ended:
                 self._rest()
         for gripper in self._grippers.values():
             gripper.advance(duration_s)

@@ -1,6 +1,5 @@
 """What of the robot pushes the cable: capsules on the hands and the links above them."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import chain
 
@@ -8,9 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robots.descriptions.model import Capsule, RobotDescription
-from robots.interfaces import ARMS, Arm
+from robots.interfaces import ARMS
 from simulation.cable.rod import Rod
 from simulation.poses import pose_matrices
+from simulation.yumi_body import YumiBody
 
 Floats = NDArray[np.float64]
 
@@ -25,46 +25,45 @@ _FINGER = (
 
 @dataclass(frozen=True, slots=True, eq=False)
 class CableObstacles:
-    """Moves hands and capsules of a rod along with the links of the robot.
+    """Moves hands and capsules of a rod along with the links of a robot.
 
     Attributes:
-        links: Index of the link of each capsule, shape (M,).
+        links: Names of the links whose poses matter.
+        owners: Index of the link of each capsule, shape (M,).
         ends_m: Ends of each capsule in its link's frame, homogeneous, shape (M, 2, 4).
         radii_m: Shape (M,).
-        tcp: Index of each arm's tool frame.
     """
 
-    links: NDArray[np.int64]
+    links: tuple[str, ...]
+    owners: NDArray[np.int64]
     ends_m: Floats
     radii_m: Floats
-    tcp: dict[Arm, int]
 
     @classmethod
-    def of(cls, robot: RobotDescription, link_names: Sequence[str]) -> "CableObstacles":
+    def of(cls, robot: RobotDescription) -> "CableObstacles":
         """Pick the parts of a robot that come near the table."""
         shapes = {link.name: link.shapes for link in robot.links}
+        tools = [f"{arm}_tcp" for arm in ARMS]
+        bodies = {f"{arm}_{link}": shapes[f"{arm}_{link}"] for arm in ARMS for link in _LINKS}
+        fingers = {f"{arm}_{finger}": _FINGER for arm in ARMS for finger in _FINGERS}
+        links = (*tools, *bodies, *fingers)
         parts = [
-            (link_names.index(name), shape)
-            for arm in ARMS
-            for name, own in chain(
-                ((f"{arm}_{link}", shapes[f"{arm}_{link}"]) for link in _LINKS),
-                ((f"{arm}_{finger}", _FINGER) for finger in _FINGERS),
-            )
+            (links.index(name), shape)
+            for name, own in chain(bodies.items(), fingers.items())
             for shape in own
             if isinstance(shape, Capsule)
         ]
-        ends = np.array([[(*s.start_m, 1.0), (*s.end_m, 1.0)] for _, s in parts])
         return cls(
-            links=np.array([index for index, _ in parts]),
-            ends_m=ends,
+            links=links,
+            owners=np.array([index for index, _ in parts]),
+            ends_m=np.array([[(*s.start_m, 1.0), (*s.end_m, 1.0)] for _, s in parts]),
             radii_m=np.array([shape.radius_m for _, shape in parts]),
-            tcp={arm: link_names.index(f"{arm}_tcp") for arm in ARMS},
         )
 
-    def follow(self, rod: Rod, positions_m: Floats, quats_xyzw: Floats) -> None:
+    def follow(self, body: YumiBody, rod: Rod) -> None:
         """Say where everything is at the end of the rod's next advance."""
-        T_world_links = pose_matrices(positions_m, quats_xyzw)
-        ends_m = np.einsum("mij,mej->mei", T_world_links[self.links], self.ends_m)
+        T_world_links = pose_matrices(*body.link_poses(self.links))
+        ends_m = np.einsum("mij,mej->mei", T_world_links[self.owners], self.ends_m)
         rod.set_capsules(ends_m[:, 0, :3], ends_m[:, 1, :3], self.radii_m)
-        for arm, index in self.tcp.items():
-            rod.move_hand(arm, T_world_links[index])
+        for arm, T_world_tcp in zip(ARMS, T_world_links, strict=False):
+            rod.move_hand(arm, T_world_tcp)

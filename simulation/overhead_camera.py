@@ -46,9 +46,9 @@ class OverheadCamera:
     def capture(self) -> CameraFrame:
         """Take a frame now."""
         world = self._world
-        poses = pose_matrices(*world.body.link_poses())
-        links = dict(zip(world.body.link_names, poses, strict=True))
-        rod = world.rod
+        names, rod = world.body.link_names, world.rod
+        poses = pose_matrices(*world.body.link_poses(names))
+        links = dict(zip(names, poses, strict=True))
         cable = cable_shapes(rod.positions_m, rod.parameters.radius_m, rod.connector_poses())
         rendering = self._renderer.render(join([robot_shapes(world.robot, links), cable]))
         return CameraFrame(

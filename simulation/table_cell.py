@@ -93,7 +93,7 @@ class TableCell:
         return cable_truth(self._world.rod.positions_m)
 
     def _come_to_rest(self) -> None:
-        while self.driver.state().moving:
+        while not self.driver.at_rest:
             self.clock.sleep_until(self.clock.now_s() + self._world.step_s)
 
     def _advance(self, steps: int) -> None:
@@ -108,14 +108,11 @@ class TableCell:
         if self._joint_states.due(now_s):
             self._joint_states.add(now_s, joint_states_json(self.driver.state()))
         if self._scene.due(now_s):
-            rod = world.rod
-            scene = scene_json(
-                world.body.link_names,
-                *world.body.link_poses(),
-                rod.positions_m,
-                rod.parameters.radius_m,
+            names, rod = world.body.link_names, world.rod
+            poses = world.body.link_poses(names)
+            self._scene.add(
+                now_s, scene_json(names, *poses, rod.positions_m, rod.parameters.radius_m)
             )
-            self._scene.add(now_s, scene)
 
 
 def _lay_cable(cable: CableScenario, rng: np.random.Generator) -> Floats:

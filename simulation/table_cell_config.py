@@ -19,7 +19,7 @@ class CableScenario(_Document):
 
     Attributes:
         knot: Which knot is tied into a cable that is laid at random.
-        file: JSON file with a centre line that is laid instead; see docs/results.md.
+        file: JSON file `{"nodes_m": [[x, y, z], ...]}` whose centre line is laid instead.
     """
 
     knot: Literal["overhand", "figure_8", "none"] = "overhand"

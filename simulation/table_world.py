@@ -36,8 +36,8 @@ class TableWorld:
         self.rod = Rod(nodes_m)
         self.robot = DESCRIPTIONS["yumi"]()
         self.body = YumiBody(HOME_RAD, dict.fromkeys(ARMS, OPEN_M), self.step_s)
-        self._obstacles = CableObstacles.of(self.robot, self.body.link_names)
-        self._obstacles.follow(self.rod, *self.body.link_poses())
+        self._obstacles = CableObstacles.of(self.robot)
+        self._obstacles.follow(self.body, self.rod)
         self.driver = SimArmsDriver(self.body, self.rod, self.now_s, yumi_limits())
         self._steps = self._still_steps = 0
 
@@ -62,5 +62,5 @@ class TableWorld:
         self._still_steps = self._still_steps + 1 if self.driver.at_rest else 0
         self.driver.advance(self.step_s)
         self.body.step()
-        self._obstacles.follow(self.rod, *self.body.link_poses())
+        self._obstacles.follow(self.body, self.rod)
         self.rod.advance(self.step_s)

@@ -24,6 +24,7 @@ Floats = NDArray[np.float64]
 # Far more than any motion needs: servo loops of real arms do not sag or lag visibly.
 _JOINT_EFFORT, _FINGER_EFFORT_N = 300.0, 40.0
 _ROBOT_GROUP, _TABLE_GROUP = 2, 1
+_ROOT = "body"
 
 
 def _pybullet() -> Any:
@@ -44,7 +45,7 @@ class YumiBody:
     """One robot in a physics server of its own.
 
     Attributes:
-        link_names: All links, the root first, in the order of `link_poses`.
+        link_names: All links, the root first.
     """
 
     def __init__(
@@ -63,7 +64,8 @@ class YumiBody:
         self._add_table()
         self._robot = self._add_robot()
         joints = self._joints()
-        self.link_names: tuple[str, ...] = ("body", *(child for child, _ in joints.values()))
+        self._links = dict(joints.values())
+        self.link_names: tuple[str, ...] = (_ROOT, *self._links)
         self._arm_joints = [joints[n][1] for arm in ARMS for n in arm_joint_names(arm)]
         self._finger_joints = [joints[n][1] for arm in ARMS for n in finger_joint_names(arm)]
         self._driven = self._arm_joints + self._finger_joints
@@ -103,17 +105,19 @@ class YumiBody:
         fingers = self._states(self._finger_joints)[:, 0].reshape(len(ARMS), 2).sum(axis=1)
         return MappingProxyType({arm: float(m) for arm, m in zip(ARMS, fingers, strict=True)})
 
-    def link_poses(self) -> tuple[Floats, Floats]:
-        """Return positions [m], shape (L, 3), and quaternions xyzw, shape (L, 4), of all links."""
+    def link_poses(self, names: Sequence[str]) -> tuple[Floats, Floats]:
+        """Return positions [m], shape (N, 3), and quaternions xyzw, shape (N, 4), of links."""
+        moving = [name for name in names if name != _ROOT]
         states = self._bullet.getLinkStates(
             self._robot,
-            range(len(self.link_names) - 1),
+            [self._links[name] for name in moving],
             computeForwardKinematics=True,
             physicsClientId=self._server,
         )
-        positions_m = np.array([YUMI_AT_TABLE.position_m, *(state[4] for state in states)])
-        quats_xyzw = np.array([_root_quat_xyzw(), *(state[5] for state in states)])
-        return positions_m, quats_xyzw
+        poses = {name: (*state[4], *state[5]) for name, state in zip(moving, states, strict=True)}
+        poses[_ROOT] = (*YUMI_AT_TABLE.position_m, *_root_quat_xyzw())
+        table = np.array([poses[name] for name in names])
+        return table[:, :3], table[:, 3:]
 
     def close(self) -> None:
         """Shut the physics server; nothing else may be called afterwards."""

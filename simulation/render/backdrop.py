@@ -17,6 +17,7 @@ Image = NDArray[np.float32]
 
 FLOOR_HEIGHT_M = -0.75
 _CLOTH, _HANGING, _FLOOR = 0.245, 0.125, 0.17
+_LINT = 12  # bits of fluff on the cloth
 _HEM_M = 0.07  # how far the cloth hangs over the table's edge, as seen from above
 
 
@@ -48,7 +49,7 @@ def make_backdrop(
     on_table = beyond_m <= 0.0
     cloth = _CLOTH * (1.0 + _weave(shape, rng) + _folds(points, beyond_m, rng))
     around = np.where(beyond_m < _HEM_M, _HANGING, _FLOOR * (1.0 + _planks(points, rng)))
-    brightness = light * np.where(on_table, cloth, around)
+    brightness = light * np.where(on_table, np.maximum(cloth, _lint(shape, rng)), around)
     brightness = _blurred(brightness, 0.6)
     height_m = camera.T_world_camera[2, 3]
     depth_m = np.where(on_table, height_m, height_m - FLOOR_HEIGHT_M)
@@ -119,6 +120,17 @@ def _folds(points: Floats, beyond_m: Floats, rng: np.random.Generator) -> Floats
         folds += rng.uniform(0.03, 0.09) * slope * reach
     rim = np.exp(-0.5 * ((beyond_m + 0.004) / 0.004) ** 2)
     return folds + 0.10 * rim - 0.05 * np.exp(-0.5 * ((beyond_m + 0.025) / 0.012) ** 2)
+
+
+def _lint(shape: tuple[int, int], rng: np.random.Generator) -> Floats:
+    """Return a few fibres and specks of dust, brighter than the cloth, on black."""
+    lint = np.zeros(shape, np.float32)
+    for _ in range(_LINT):
+        start = rng.uniform(0.0, shape[::-1])
+        end = start + rng.normal(0.0, 3.0, 2)
+        first, last = ([int(16 * c) for c in point] for point in (start, end))
+        cv2.line(lint, first, last, rng.uniform(0.3, 0.5), 1, cv2.LINE_AA, 4)
+    return np.asarray(lint, np.float64)
 
 
 def _planks(points: Floats, rng: np.random.Generator) -> Floats:

@@ -73,18 +73,21 @@ class Renderer:
         backdrop = self._backdrop
         light = cv2.GaussianBlur(plane_light(self._plane, lamp.shadow), (0, 0), _PENUMBRA_PX)
         image = backdrop.brightness * (AMBIENT + (1.0 - AMBIENT) * light)
-        depth_m = np.where(light < 0.5, np.float32(np.nan), backdrop.depth_m)
+        depth_m = backdrop.depth_m.copy()
         speckle = np.where(backdrop.on_table, np.float32(_CLOTH_SPECKLE), np.float32(0.01))
         flicker = np.array([_SPECKLE[Material(kind)] for kind in Material], np.float32)
-        _merge(rays, flicker[primitives.material], backdrop.light, image, speckle, depth_m)
+        met = _merge(rays, flicker[primitives.material], backdrop.light, image, speckle, depth_m)
+        depth_m[~met & (light < 0.5)] = np.nan
         return Rendering(image, speckle, depth_m)
 
 
 @njit(cache=True)
 def _merge(
     rays: Rays, flicker: Image, light: Image, image: Image, speckle: Image, depth_m: Image
-) -> None:
+) -> NDArray[np.bool_]:
     """Average the rays of each pixel over what the backdrop shows there.
+
+    What the backdrop hides, such as an end that hangs down behind the table's edge, is not seen.
 
     Args:
         rays: Finer than the image by `SUPERSAMPLING`.
@@ -93,8 +96,12 @@ def _merge(
         image: Brightness of the backdrop; is drawn over.
         speckle: Speckle of the backdrop; is drawn over.
         depth_m: Depth of the backdrop; becomes that of the nearest ray.
+
+    Returns:
+        Where a shape is seen, same shape as the image.
     """
     height, width = image.shape
+    seen = np.zeros((height, width), np.bool_)
     count = SUPERSAMPLING * SUPERSAMPLING
     for v in range(height):
         for u in range(width):
@@ -103,7 +110,7 @@ def _merge(
                 row = v * SUPERSAMPLING + ray // SUPERSAMPLING
                 column = u * SUPERSAMPLING + ray % SUPERSAMPLING
                 index = rays.owner[row, column]
-                if index >= 0:
+                if index >= 0 and rays.depth[row, column] <= depth_m[v, u]:
                     met += 1
                     total += rays.brightness[row, column]
                     noise += flicker[index]
@@ -113,6 +120,8 @@ def _merge(
                 image[v, u] = rest * image[v, u] + light[v, u] * total / count
                 speckle[v, u] = rest * speckle[v, u] + noise / count
                 depth_m[v, u] = nearest
+                seen[v, u] = True
+    return seen
 
 
 def _view(camera: CameraModel, finer: int) -> View:

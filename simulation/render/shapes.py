@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robots.descriptions.model import Box, Capsule, RobotDescription
-from simulation.render.primitives import CAPSULE, Material, Primitives, boxes, capsules, join
+from simulation.render.primitives import Material, Primitives, boxes, capsules, join
 
 Floats = NDArray[np.float64]
 
@@ -33,13 +33,13 @@ _RELIEF_STEPS = 6
 
 
 def robot_shapes(robot: RobotDescription, T_world_links: Mapping[str, Floats]) -> Primitives:
-    """Return the shapes of all links at their poses (4, 4), less those that the table hides."""
+    """Return the shapes of all links at their poses (4, 4)."""
     parts = [
         _link_shape(shape, T_world_links[link.name], float(np.mean(link.colour[:3])))
         for link in robot.links
         for shape in link.shapes
     ]
-    return join([part for part in parts if _highest_m(part) > 0.0])
+    return join(parts)
 
 
 def cable_shapes(nodes_m: Floats, radius_m: float, T_world_plugs: Floats) -> Primitives:
@@ -77,15 +77,6 @@ def _link_shape(shape: Box | Capsule, T_world_link: Floats, albedo: float) -> Pr
         return _box(T_world_link, shape.low_m, shape.high_m, albedo, Material.PAINT)
     ends = np.array([shape.start_m, shape.end_m]) @ T_world_link[:3, :3].T + T_world_link[:3, 3]
     return capsules(ends[:1], ends[1:], np.array([shape.radius_m]), albedo, Material.PAINT)
-
-
-def _highest_m(part: Primitives) -> float:
-    """Return the height of a single shape's highest point over the table."""
-    shape = part.shape[0]
-    if part.kind[0] == CAPSULE:
-        return float(max(shape[2], shape[5]) + shape[6])
-    upwards = shape[:9].reshape(3, 3)[:, 2]
-    return float(shape[11] + np.abs(upwards) @ shape[12:15])
 
 
 def _box(

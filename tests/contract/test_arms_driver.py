@@ -83,7 +83,7 @@ def test_is_where_the_trajectory_says_at_every_time(rig, driver):
     start_s = driver.state().stamp_s
     driver.execute(trajectory)
     states = until_rest(rig)
-    assert len(states) == int(trajectory.duration_s / STEP_S) + 2
+    assert len(states) <= int(trajectory.duration_s / STEP_S) + 4
     for state in states:
         position, _, acceleration = trajectory.at(state.stamp_s - start_s)
         assert state.positions_rad == pytest.approx(position, abs=TRACKING_RAD)
@@ -127,7 +127,7 @@ def test_a_stop_keeps_the_jerk_limits_and_the_path(rig, driver):
     for state in states:
         gone = state.positions_rad - HOME_RAD
         assert np.linalg.norm(gone - (gone @ direction) * direction) < 10 * TRACKING_RAD
-    assert np.abs(states[-1].velocities_rad_s).max() < 1e-2
+    assert np.abs(states[-1].velocities_rad_s).max() < 1e-3
 
 
 def test_brakes_bite_harder_than_a_stop_does(rig, driver):

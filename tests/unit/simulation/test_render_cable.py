@@ -107,6 +107,17 @@ def test_a_lifted_strand_throws_its_shadow_on_the_side_away_from_the_lamp(render
     assert shadow.mean() - strand == pytest.approx(0.05 * 0.35 / 1.10 / 0.00102, abs=1.5)
 
 
+def test_an_end_that_hangs_over_the_edge_is_hidden_by_the_table(renderer):
+    down = np.linspace(0.0, -0.5, 51)
+    hanging = np.column_stack([np.full(51, 0.52), np.zeros(51), down])
+    depth_m = renderer.render(cable(hanging)).depth_m
+    edge = int(CAMERA.project(np.array([[0.5, 0.0, 0.0]]))[0, 0])
+    assert depth_m[376:397, 60 : edge - 4] == pytest.approx(1.15)
+    lowest = CAMERA.project(hanging[-1:])[0, 0]
+    assert lowest < edge - 40
+    assert depth_m[386, edge + 5 : edge + 20].min() < 1.7
+
+
 def test_what_lies_in_a_shadow_has_no_depth(renderer):
     line = np.column_stack([np.zeros(81), np.linspace(-0.3, 0.3, 81), np.full(81, 0.05)])
     depth_m = renderer.render(cable(line)).depth_m

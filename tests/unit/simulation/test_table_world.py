@@ -10,6 +10,7 @@ from simulation.table_world import TableWorld
 STRAIGHT = np.column_stack([np.linspace(-0.35, 0.35, 71), np.zeros(71), np.full(71, 0.0033)])
 ACROSS_RAD = 0.5 * np.pi  # fingers open across a cable that lies along x
 LOW_M = 0.008  # of a tool over the table when it grasps
+UP_M = np.array([0.0, 0.0, 0.06])
 
 
 @pytest.fixture
@@ -35,15 +36,15 @@ def go(world, arms, trajectory):
     wait(world, arms)
 
 
-def reach(world, arms, **places_m):
+def reach(world, arms, onward_m=(), **places_m):
     """Bring tools down to places (x, y) on the table, fingers across x."""
-    goals = {arm: TcpGoal(np.array([x, y, 0.08]), ACROSS_RAD) for arm, (x, y) in places_m.items()}
+    down_m = np.array([0.0, 0.0, LOW_M - 0.08])
+    goals = {
+        arm: TcpGoal(np.array([x, y, 0.08]), ACROSS_RAD, onward_m=(down_m, *onward_m))
+        for arm, (x, y) in places_m.items()
+    }
     go(world, arms, arms.plan(goals))
-    go(world, arms, arms.plan_line({arm: np.array([0.0, 0.0, LOW_M - 0.08]) for arm in goals}))
-
-
-def raise_arms(world, arms, *names):
-    go(world, arms, arms.plan_line({arm: np.array([0.0, 0.0, 0.1]) for arm in names}))
+    go(world, arms, arms.plan_line(dict.fromkeys(goals, down_m)))
 
 
 def grip(world, arms, **grips):
@@ -57,9 +58,9 @@ def test_a_pinch_lifts_the_cable_and_lets_go_of_it(world, arms):
     grip(world, arms, left="pinch")
     assert arms.holds("left")
     assert world.driver.state().openings_m["left"] == pytest.approx(0.0066, abs=1e-3)
-    raise_arms(world, arms, "left")
+    go(world, arms, arms.plan_line({"left": UP_M}))
     node = np.abs(world.rod.positions_m[:, 0] + 0.2).argmin()
-    assert world.rod.positions_m[node, 2] == pytest.approx(LOW_M + 0.1, abs=0.01)
+    assert world.rod.positions_m[node, 2] == pytest.approx(LOW_M + 0.06, abs=0.01)
     grip(world, arms, left="open")
     assert not arms.holds("left")
     world.advance(240)
@@ -71,28 +72,30 @@ def test_a_miss_holds_nothing_and_shuts(world, arms):
     grip(world, arms, left="pinch")
     assert not arms.holds("left")
     assert world.driver.state().openings_m["left"] == pytest.approx(0.0, abs=1e-4)
-    raise_arms(world, arms, "left")
+    go(world, arms, arms.plan_line({"left": UP_M}))
     assert world.rod.positions_m[:, 2].max() < 0.01
 
 
 def test_the_cable_slides_through_a_cage_and_not_through_a_pinch(world, arms):
-    reach(world, arms, left=(-0.15, 0.0), right=(0.15, 0.0))
+    apart_m = np.array([0.10, 0.0, 0.0])
+    reach(world, arms, (UP_M, apart_m), left=(-0.15, 0.0), right=(0.15, 0.0))
     grip(world, arms, left="cage", right="pinch")
     assert arms.holds("left")
     assert arms.holds("right")
     before = {arm: world.rod.held_nodes(arm)[0] for arm in ("left", "right")}
     # Apart along the cable: the pinched side takes cable out of the cage.
-    go(world, arms, arms.plan_line({arm: np.array([0.0, 0.0, 0.03]) for arm in before}))
-    go(world, arms, arms.plan_line({"right": np.array([0.10, 0.0, 0.0])}))
+    go(world, arms, arms.plan_line(dict.fromkeys(before, UP_M)))
+    go(world, arms, arms.plan_line({"right": apart_m}))
     after = {arm: world.rod.held_nodes(arm)[0] for arm in before}
     assert abs(after["right"] - before["right"]) <= 1
     assert after["left"] <= before["left"] - 6
 
 
 def test_closed_fingers_push_the_cable_aside(world, arms):
-    reach(world, arms, left=(-0.2, 0.04))
+    push_m = np.array([0.0, -0.06, 0.0])
+    reach(world, arms, (push_m,), left=(-0.2, 0.04))
     grip(world, arms, left="pinch")
-    go(world, arms, arms.plan_line({"left": np.array([0.0, -0.06, 0.0])}))
+    go(world, arms, arms.plan_line({"left": push_m}))
     pushed = world.rod.positions_m[np.abs(STRAIGHT[:, 0] + 0.2) < 0.02, 1]
     assert pushed.min() < -0.02
 

@@ -21,8 +21,7 @@ def body():
 
 
 def link_pose(body, name):
-    poses = pose_matrices(*body.link_poses())
-    return poses[body.link_names.index(name)]
+    return pose_matrices(*body.link_poses([name]))[0]
 
 
 def follow(body, trajectory, openings_m=OPEN):
