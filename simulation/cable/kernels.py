@@ -1,13 +1,14 @@
 """The compiled solver of the rod: extended position-based dynamics with small steps.
 
 Each step predicts positions, then corrects them: bending node by node, stretch of the whole
-chain at once (its constraints form a tridiagonal system), contacts and grasps one by one.
+chain at once (its constraints form a tridiagonal system), grasps and contacts one by one.
 One pass over many small steps converges better than many passes over few large ones
 (Macklin et al., "Small Steps in Physics Simulation", 2019); the direct stretch solve follows
 Deul et al., "Direct Position-Based Solver for Stiff Rods", 2018.
 
 All kernels live in this one file: the compiler's cache looks only at the file of the function
-that is called, and would keep stale code of helpers that live elsewhere.
+that is called, and would keep stale code of helpers that live elsewhere. Vectors are tuples of
+three numbers here, which compile to registers.
 """
 
 from typing import NamedTuple
@@ -18,9 +19,13 @@ from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
+Vector = tuple[float, float, float]
 
-# A step never moves a contact by more than this, so that a deep overlap does not explode [m].
+kernel = numba.njit(cache=True, error_model="numpy")
+
+# A step never pushes strands apart, or a strand out of an obstacle, by more than this [m].
 LARGEST_PUSH_M = 0.004
+LARGEST_OBSTACLE_PUSH_M = 0.0005
 # From these tensions on, steps are split into two and into four [N].
 SHORTER_STEPS_N = 2.0
 SHORTEST_STEPS_N = 8.0
@@ -32,8 +37,10 @@ LARGEST_SPEED_M_S = 8.0
 CHAIN_NEIGHBOURS = 3
 # Rod segments this close to a grasp do not feel the fingers, which hold them.
 GRASP_NEIGHBOURS = 2
-# Every this many steps the candidate lists are checked against how far things have moved.
+# Candidates are listed up to this distance, and anew when something has moved by half of it.
 SKIN_M = 0.008
+# Keeps divisions by lengths finite [m].
+TINY_M = 1e-12
 
 
 class Chain(NamedTuple):
@@ -48,20 +55,23 @@ class Chain(NamedTuple):
     tensions: Floats  # (N - 1,), mean over the last advance [N]
     peak: Floats  # (1,), greatest tension of late [N]
     directions: Floats  # (N - 1, 3), scratch
-    solution: Floats  # (N - 1,), scratch
-    sweep: Floats  # (N - 1,), scratch
+    diagonal: Floats  # (N - 1,), scratch
+    coupling: Floats  # (N - 1,), scratch
+    impulses: Floats  # (N - 1,), of stretch in the last step
 
 
 class Neighbours(NamedTuple):
     """Segments that may touch each other or an obstacle before the lists are made anew."""
 
-    reference: Floats  # (N, 3), positions at the last making
+    reference: Floats  # (N, 3), positions at the last listing
     obstacle_reference: Floats  # (M, 6)
     order: Ints  # (N - 1,), segments sorted by x
     pairs: Ints  # (P, 2)
-    normals: Floats  # (P, 3), from the second to the first, kept to notice a strand passing through
+    normals: Floats  # (P, 3), from the second to the first as it was in the last step
+    old_normals: Floats  # (P, 3), scratch
+    places: Ints  # (N - 1, N - 1), place of a pair in the list plus one, or zero
     obstacle_pairs: Ints  # (Q, 2), segment and obstacle
-    counts: Ints  # (2,), pairs and obstacle pairs in use; -1 asks for making anew
+    counts: Ints  # (3,), pairs, obstacle pairs, and whether to list them anew
 
 
 class Obstacles(NamedTuple):
@@ -83,6 +93,8 @@ class Rings(NamedTuple):
     grip_force: Floats  # (R,), friction force that needs no normal force
     friction: Floats  # (R,)
     force: Floats  # (R, 3), mean force of the ring on the cable over the last advance
+    guided: Ints  # (R,), scratch
+    guides: Floats  # (R, 6), scratch: where a guided node was, and along which direction
 
 
 class Constants(NamedTuple):
@@ -102,7 +114,7 @@ class Constants(NamedTuple):
     gravity: float
 
 
-@numba.njit(cache=True)
+@kernel
 def advance(
     chain: Chain,
     near: Neighbours,
@@ -113,8 +125,8 @@ def advance(
     step_s: float,
 ) -> None:
     """Advance by `steps` steps of `step_s` each."""
-    chain.tensions[:] = 0.0
-    rings.force[:] = 0.0
+    chain.tensions.fill(0.0)
+    rings.force.fill(0.0)
     for step in range(steps):
         parts = _parts(chain.peak[0])
         part_s, share = step_s / parts, 1.0 / (steps * parts)
@@ -123,15 +135,17 @@ def advance(
             _predict(chain, constants, part_s)
             _bend(chain, constants, part_s, part == step % 2)
             _stretch(chain, rings, constants, part_s, share)
-            _refresh(chain, near, obstacles, constants, rings, done)
-            _touch_self(chain, near, constants)
+            if _is_stale(chain, near, obstacles, done):
+                _list_pairs(chain, near, constants)
+                _list_obstacle_pairs(chain, near, obstacles, rings, constants, done)
             _touch_obstacles(chain, near, obstacles, constants, done, share)
             _hold(chain, rings, constants, done, part_s, share)
+            _touch_self(chain, near, constants)
             _rest_on_table(chain, constants)
             _update_velocities(chain, part_s)
 
 
-@numba.njit(cache=True)
+@kernel
 def _parts(peak: float) -> int:
     """Return into how many parts a step is split at that tension.
 
@@ -143,50 +157,99 @@ def _parts(peak: float) -> int:
     return 2 if peak < SHORTEST_STEPS_N else 4
 
 
-@numba.njit(cache=True)
+@kernel
+def _at(x: Floats, i: int) -> Vector:
+    return x[i, 0], x[i, 1], x[i, 2]
+
+
+@kernel
+def _add(x: Floats, i: int, scale: float, v: Vector) -> None:
+    x[i, 0] += scale * v[0]
+    x[i, 1] += scale * v[1]
+    x[i, 2] += scale * v[2]
+
+
+@kernel
+def _copy(to: Floats, source: Floats, rows: int) -> None:
+    for i in range(rows):
+        for k in range(3):
+            to[i, k] = source[i, k]
+
+
+@kernel
+def _plus(a: Vector, scale: float, b: Vector) -> Vector:
+    return a[0] + scale * b[0], a[1] + scale * b[1], a[2] + scale * b[2]
+
+
+@kernel
+def _minus(a: Vector, b: Vector) -> Vector:
+    return a[0] - b[0], a[1] - b[1], a[2] - b[2]
+
+
+@kernel
+def _between(a: Vector, b: Vector, f: float) -> Vector:
+    return _plus(a, f, _minus(b, a))
+
+
+@kernel
+def _dot(a: Vector, b: Vector) -> float:
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+@kernel
+def _length(a: Vector) -> float:
+    return np.sqrt(_dot(a, a))
+
+
+@kernel
 def _predict(chain: Chain, constants: Constants, step_s: float) -> None:
     keep = 1.0 - constants.air_damping * step_s
-    for i in range(len(chain.positions)):
-        chain.velocities[i, 2] -= constants.gravity * step_s
+    fall = constants.gravity * step_s
+    x, v = chain.positions, chain.velocities
+    for i in range(len(x)):
+        v[i, 2] -= fall
         for k in range(3):
-            chain.previous[i, k] = chain.positions[i, k]
-            chain.velocities[i, k] *= keep
-            chain.positions[i, k] += chain.velocities[i, k] * step_s
+            chain.previous[i, k] = x[i, k]
+            v[i, k] *= keep
+            x[i, k] += v[i, k] * step_s
 
 
-@numba.njit(cache=True)
+@kernel
 def _update_velocities(chain: Chain, step_s: float) -> None:
-    for i in range(len(chain.positions)):
-        square = 0.0
+    rate = 1.0 / step_s
+    v = chain.velocities
+    for i in range(len(v)):
         for k in range(3):
-            chain.velocities[i, k] = (chain.positions[i, k] - chain.previous[i, k]) / step_s
-            square += chain.velocities[i, k] ** 2
+            v[i, k] = (chain.positions[i, k] - chain.previous[i, k]) * rate
+    for i in range(len(v)):
+        square = v[i, 0] ** 2 + v[i, 1] ** 2 + v[i, 2] ** 2
         if square > LARGEST_SPEED_M_S**2:
             slow = LARGEST_SPEED_M_S / np.sqrt(square)
             for k in range(3):
-                chain.velocities[i, k] *= slow
+                v[i, k] *= slow
 
 
-@numba.njit(cache=True)
+@kernel
 def _bend(chain: Chain, constants: Constants, step_s: float, forward: bool) -> None:
     """Pull second differences to zero: energy |x- - 2x + x+|^2 B / (2 ds^3)."""
     x, before, w = chain.positions, chain.previous, chain.inverse_masses
     gamma = constants.bending_damping / step_s
+    rate = 1.0 / step_s**2
     count = len(x)
     for n in range(1, count - 1):
         i = n if forward else count - 1 - n
         weight = w[i - 1] + 4.0 * w[i] + w[i + 1]
-        scale = 1.0 / ((1.0 + gamma) * weight + chain.bending_compliances[i] / step_s**2)
+        scale = -1.0 / ((1.0 + gamma) * weight + chain.bending_compliances[i] * rate)
         for k in range(3):
             now = x[i - 1, k] - 2.0 * x[i, k] + x[i + 1, k]
             then = before[i - 1, k] - 2.0 * before[i, k] + before[i + 1, k]
-            push = -(now + gamma * (now - then)) * scale
+            push = (now + gamma * (now - then)) * scale
             x[i - 1, k] += w[i - 1] * push
             x[i, k] -= 2.0 * w[i] * push
             x[i + 1, k] += w[i + 1] * push
 
 
-@numba.njit(cache=True)
+@kernel
 def _stretch(chain: Chain, rings: Rings, constants: Constants, step_s: float, share: float) -> None:
     """Restore all lengths at once.
 
@@ -194,205 +257,188 @@ def _stretch(chain: Chain, rings: Rings, constants: Constants, step_s: float, sh
     whole chain in one solve.
     """
     x, w, g = chain.positions, chain.inverse_masses, chain.directions
-    diagonal, solution = chain.sweep, chain.solution
+    diagonal, coupling, impulses = chain.diagonal, chain.coupling, chain.impulses
+    guides = _choose_guides(chain, rings, constants.overload_force * step_s**2)
     count = len(g)
     compliance = constants.stretch_compliance / step_s**2
-    guided = _guided_nodes(rings, solution, constants.overload_force * step_s**2)
     for i in range(count):
-        dx = x[i + 1, 0] - x[i, 0]
-        dy = x[i + 1, 1] - x[i, 1]
-        dz = x[i + 1, 2] - x[i, 2]
-        length = np.sqrt(dx * dx + dy * dy + dz * dz) + 1e-12
-        g[i, 0] = dx / length
-        g[i, 1] = dy / length
-        g[i, 2] = dz / length
+        along = _minus(_at(x, i + 1), _at(x, i))
+        length = _length(along) + TINY_M
+        inverse = 1.0 / length
+        g[i, 0], g[i, 1], g[i, 2] = along[0] * inverse, along[1] * inverse, along[2] * inverse
         diagonal[i] = w[i] + w[i + 1] + compliance * chain.rest_lengths[i]
-        solution[i] = length - chain.rest_lengths[i]
-    coupling = np.empty(count)
+        impulses[i] = length - chain.rest_lengths[i]
     for i in range(count - 1):
-        coupling[i] = -w[i + 1] * (
-            g[i, 0] * g[i + 1, 0] + g[i, 1] * g[i + 1, 1] + g[i, 2] * g[i + 1, 2]
-        )
-    fixed = np.empty((len(guided), 3))
-    along = np.empty((len(guided), 3))
-    for r in range(len(guided)):
-        n = guided[r]
-        fixed[r] = x[n]
-        along[r] = _tangent(x, n)
-        into = w[n] * _dot(along[r], g[n - 1])
-        out = w[n] * _dot(along[r], g[n])
-        diagonal[n - 1] += into * _dot(along[r], g[n - 1]) - w[n]
-        diagonal[n] += out * _dot(along[r], g[n]) - w[n]
-        coupling[n - 1] = -into * _dot(along[r], g[n])
+        coupling[i] = -w[i + 1] * _dot(_at(g, i), _at(g, i + 1))
+    for r in range(guides):
+        n, along = rings.guided[r], _guide_direction(rings, r)
+        into, out = _dot(along, _at(g, n - 1)), _dot(along, _at(g, n))
+        diagonal[n - 1] += w[n] * (into * into - 1.0)
+        diagonal[n] += w[n] * (out * out - 1.0)
+        coupling[n - 1] = -w[n] * into * out
     for i in range(1, count):
         factor = coupling[i - 1] / diagonal[i - 1]
         diagonal[i] -= factor * coupling[i - 1]
-        solution[i] -= factor * solution[i - 1]
-    solution[count - 1] /= diagonal[count - 1]
+        impulses[i] -= factor * impulses[i - 1]
+    impulses[count - 1] /= diagonal[count - 1]
     for i in range(count - 2, -1, -1):
-        solution[i] = (solution[i] - coupling[i] * solution[i + 1]) / diagonal[i]
+        impulses[i] = (impulses[i] - coupling[i] * impulses[i + 1]) / diagonal[i]
     peak = PEAK_MEMORY * chain.peak[0]
+    rate = 1.0 / step_s**2
     for i in range(count):
-        tension = solution[i] / step_s**2
+        tension = impulses[i] * rate
         chain.tensions[i] += tension * share
         peak = max(peak, tension)
-        for k in range(3):
-            x[i, k] += w[i] * g[i, k] * solution[i]
-            x[i + 1, k] -= w[i + 1] * g[i, k] * solution[i]
+        _add(x, i, w[i] * impulses[i], _at(g, i))
+        _add(x, i + 1, -w[i + 1] * impulses[i], _at(g, i))
     chain.peak[0] = peak
-    for r in range(len(guided)):
-        n = guided[r]
-        moved = _dot(x[n] - fixed[r], along[r])
-        for k in range(3):
-            x[n, k] = fixed[r, k] + moved * along[r, k]
+    for r in range(guides):
+        n, along = rings.guided[r], _guide_direction(rings, r)
+        fixed = rings.guides[r, 0], rings.guides[r, 1], rings.guides[r, 2]
+        moved = _plus(fixed, _dot(_minus(_at(x, n), fixed), along), along)
+        x[n, 0], x[n, 1], x[n, 2] = moved
 
 
-@numba.njit(cache=True)
-def _guided_nodes(rings: Rings, pulls: Floats, overload: float) -> Ints:
-    """Return the inner node nearest to each ring that is not overloaded, each node once."""
-    guided = np.empty(len(rings.arc), np.int64)
+@kernel
+def _choose_guides(chain: Chain, rings: Rings, overload: float) -> int:
+    """Note the inner node nearest to each ring that is not overloaded, each once; count them."""
+    x, pulls = chain.positions, chain.impulses
     count = 0
     for r in range(len(rings.arc)):
-        node = min(max(int(np.round(rings.arc[r])), 1), len(pulls) - 1)
+        node = min(max(int(rings.arc[r] + 0.5), 1), len(x) - 2)
         known = max(pulls[node - 1], pulls[node]) > overload
         for other in range(count):
-            known = known or guided[other] == node
+            known = known or rings.guided[other] == node
         if not known:
-            guided[count] = node
+            along = _minus(_at(x, node + 1), _at(x, node - 1))
+            inverse = 1.0 / (_length(along) + TINY_M)
+            rings.guided[count] = node
+            for k in range(3):
+                rings.guides[count, k] = x[node, k]
+                rings.guides[count, k + 3] = along[k] * inverse
             count += 1
-    return guided[:count]
+    return count
 
 
-@numba.njit(cache=True)
-def _tangent(x: Floats, node: int) -> Floats:
-    along = x[node + 1] - x[node - 1]
-    return along / (np.sqrt(_dot(along, along)) + 1e-12)
+@kernel
+def _guide_direction(rings: Rings, r: int) -> Vector:
+    return rings.guides[r, 3], rings.guides[r, 4], rings.guides[r, 5]
 
 
-@numba.njit(cache=True)
-def _dot(a: Floats, b: Floats) -> float:
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+@kernel
+def _obstacle_end(obstacles: Obstacles, m: int, end: int, done: float) -> Vector:
+    start = obstacles.start[m, end], obstacles.start[m, end + 1], obstacles.start[m, end + 2]
+    stop = obstacles.end[m, end], obstacles.end[m, end + 1], obstacles.end[m, end + 2]
+    return _between(start, stop, done)
 
 
-@numba.njit(cache=True)
-def _refresh(
-    chain: Chain,
-    near: Neighbours,
-    obstacles: Obstacles,
-    constants: Constants,
-    rings: Rings,
-    done: float,
-) -> None:
-    """Make the candidate lists anew where anything has moved by half the skin."""
+@kernel
+def _is_stale(chain: Chain, near: Neighbours, obstacles: Obstacles, done: float) -> bool:
+    """Return whether anything has moved by half the skin since the last listing."""
     limit = (0.5 * SKIN_M) ** 2
-    fresh = near.counts[0] >= 0
+    if near.counts[2]:
+        return True
     for i in range(len(chain.positions)):
-        square = 0.0
-        for k in range(3):
-            square += (chain.positions[i, k] - near.reference[i, k]) ** 2
-        if square > limit:
-            fresh = False
+        moved = _minus(_at(chain.positions, i), _at(near.reference, i))
+        if _dot(moved, moved) > limit:
+            return True
     for m in range(len(obstacles.radii)):
-        for end in range(2):
-            square = 0.0
-            for k in range(3 * end, 3 * end + 3):
-                now = obstacles.start[m, k] * (1.0 - done) + obstacles.end[m, k] * done
-                square += (now - near.obstacle_reference[m, k]) ** 2
-            if square > limit:
-                fresh = False
-    if fresh:
-        return
-    near.reference[:] = chain.positions
-    near.obstacle_reference[:] = obstacles.start * (1.0 - done) + obstacles.end * done
-    _list_pairs(chain, near, constants)
-    _list_obstacle_pairs(chain, near, obstacles, constants, rings)
+        for end in range(0, 6, 3):
+            now = _obstacle_end(obstacles, m, end, done)
+            for k in range(3):
+                if abs(now[k] - near.obstacle_reference[m, end + k]) > 0.25 * SKIN_M:
+                    return True
+    return False
 
 
-@numba.njit(cache=True)
+@kernel
 def _list_pairs(chain: Chain, near: Neighbours, constants: Constants) -> None:
-    """Sweep along x over segments sorted by their middle."""
-    x = chain.positions
-    order = near.order
-    middles = 0.5 * (x[1:] + x[:-1])
+    """Sweep along x over segments sorted by their start."""
+    x, order = chain.positions, near.order
+    near.counts[2] = 0
+    _copy(near.reference, x, len(x))
+    _copy(near.old_normals, near.normals, near.counts[0])
     for n in range(1, len(order)):  # insertion sort: the order hardly changes between calls
-        segment = order[n]
-        place = n
-        while place > 0 and middles[order[place - 1], 0] > middles[segment, 0]:
+        segment, place = order[n], n
+        while place > 0 and x[order[place - 1], 0] > x[segment, 0]:
             order[place] = order[place - 1]
             place -= 1
         order[place] = segment
-    longest = chain.rest_lengths.max() * 1.1
     reach = 2.0 * constants.radius + SKIN_M
-    old_count = near.counts[0]
-    old_pairs = near.pairs[: max(old_count, 0)].copy()
-    old_normals = near.normals[: max(old_count, 0)].copy()
+    apart = reach
+    for length in chain.rest_lengths:
+        apart = max(apart, reach + 2.1 * length)
     count = 0
     for n in range(len(order)):
         for later in range(n + 1, len(order)):
-            a = min(order[n], order[later])
-            b = max(order[n], order[later])
-            if middles[order[later], 0] - middles[order[n], 0] > reach + longest:
+            a, b = min(order[n], order[later]), max(order[n], order[later])
+            if x[order[later], 0] - x[order[n], 0] > apart:
                 break
-            if b - a < CHAIN_NEIGHBOURS or count == len(near.pairs):
+            if b - a < CHAIN_NEIGHBOURS or abs(x[a, 1] - x[b, 1]) > apart:
                 continue
-            if abs(middles[a, 1] - middles[b, 1]) > reach + longest:
-                continue
-            s, t = _closest(x[a], x[a + 1], x[b], x[b + 1])
-            gap = x[a] + s * (x[a + 1] - x[a]) - x[b] - t * (x[b + 1] - x[b])
-            distance = np.sqrt(_dot(gap, gap)) + 1e-12
-            if distance < reach:
-                near.pairs[count, 0] = a
-                near.pairs[count, 1] = b
-                near.normals[count] = gap / distance
-                for other in range(len(old_pairs)):
-                    if old_pairs[other, 0] == a and old_pairs[other, 1] == b:
-                        near.normals[count] = old_normals[other]
+            s, t = _closest(_at(x, a), _at(x, a + 1), _at(x, b), _at(x, b + 1))
+            gap = _gap(x, a, s, b, t)
+            distance = _length(gap) + TINY_M
+            if distance < reach and count < len(near.pairs):
+                old = near.places[a, b]
+                for k in range(3):
+                    known = near.old_normals[old - 1, k] if old else gap[k] / distance
+                    near.normals[count, k] = known
+                near.pairs[count, 0], near.pairs[count, 1] = a, b
                 count += 1
     near.counts[0] = count
+    near.places.fill(0)
+    for p in range(count):
+        near.places[near.pairs[p, 0], near.pairs[p, 1]] = p + 1
 
 
-@numba.njit(cache=True)
+@kernel
 def _list_obstacle_pairs(
-    chain: Chain, near: Neighbours, obstacles: Obstacles, constants: Constants, rings: Rings
+    chain: Chain,
+    near: Neighbours,
+    obstacles: Obstacles,
+    rings: Rings,
+    constants: Constants,
+    done: float,
 ) -> None:
     x = chain.positions
-    now = near.obstacle_reference
     count = 0
     for m in range(len(obstacles.radii)):
+        first = _obstacle_end(obstacles, m, 0, done)
+        second = _obstacle_end(obstacles, m, 3, done)
         reach = obstacles.radii[m] + constants.radius + SKIN_M
+        for k in range(3):
+            near.obstacle_reference[m, k] = first[k]
+            near.obstacle_reference[m, k + 3] = second[k]
         for i in range(len(chain.rest_lengths)):
             outside = False
             for k in range(3):
-                low = min(now[m, k], now[m, k + 3]) - reach
-                high = max(now[m, k], now[m, k + 3]) + reach
+                low, high = min(first[k], second[k]) - reach, max(first[k], second[k]) + reach
                 if max(x[i, k], x[i + 1, k]) < low or min(x[i, k], x[i + 1, k]) > high:
                     outside = True
-            if outside or count == len(near.obstacle_pairs):
-                continue
-            held = False
-            for r in range(len(rings.arc)):
-                held = held or abs(i + 0.5 - rings.arc[r]) < GRASP_NEIGHBOURS
-            if not held:
-                near.obstacle_pairs[count, 0] = i
-                near.obstacle_pairs[count, 1] = m
+            if not outside and not _is_held(rings, i) and count < len(near.obstacle_pairs):
+                near.obstacle_pairs[count, 0], near.obstacle_pairs[count, 1] = i, m
                 count += 1
     near.counts[1] = count
 
 
-@numba.njit(cache=True)
-def _closest(p1: Floats, q1: Floats, p2: Floats, q2: Floats) -> tuple[float, float]:
+@kernel
+def _is_held(rings: Rings, segment: int) -> bool:
+    for r in range(len(rings.arc)):
+        if abs(segment + 0.5 - rings.arc[r]) < GRASP_NEIGHBOURS:
+            return True
+    return False
+
+
+@kernel
+def _closest(p1: Vector, q1: Vector, p2: Vector, q2: Vector) -> tuple[float, float]:
     """Return where two segments are closest, as fractions of their lengths.
 
     Ericson, "Real-Time Collision Detection", section 5.1.9.
     """
-    d1x, d1y, d1z = q1[0] - p1[0], q1[1] - p1[1], q1[2] - p1[2]
-    d2x, d2y, d2z = q2[0] - p2[0], q2[1] - p2[1], q2[2] - p2[2]
-    rx, ry, rz = p1[0] - p2[0], p1[1] - p2[1], p1[2] - p2[2]
-    a = d1x * d1x + d1y * d1y + d1z * d1z + 1e-18
-    e = d2x * d2x + d2y * d2y + d2z * d2z + 1e-18
-    b = d1x * d2x + d1y * d2y + d1z * d2z
-    c = d1x * rx + d1y * ry + d1z * rz
-    f = d2x * rx + d2y * ry + d2z * rz
+    d1, d2, r = _minus(q1, p1), _minus(q2, p2), _minus(p1, p2)
+    a, e, b = _dot(d1, d1) + TINY_M**2, _dot(d2, d2) + TINY_M**2, _dot(d1, d2)
+    c, f = _dot(d1, r), _dot(d2, r)
     denominator = a * e - b * b
     s = 0.5
     if denominator > 1e-6 * a * e:
@@ -407,61 +453,62 @@ def _closest(p1: Floats, q1: Floats, p2: Floats, q2: Floats) -> tuple[float, flo
     return s, t
 
 
-@numba.njit(cache=True)
+@kernel
+def _gap(x: Floats, a: int, s: float, b: int, t: float) -> Vector:
+    """Return the vector to a point of segment a from a point of segment b."""
+    return _minus(_between(_at(x, a), _at(x, a + 1), s), _between(_at(x, b), _at(x, b + 1), t))
+
+
+@kernel
+def _sideways(v: Vector, normal: Vector) -> Vector:
+    """Return the part of a vector at right angles to a normal."""
+    return _plus(v, -_dot(v, normal), normal)
+
+
+@kernel
+def _with_friction(push: float, normal: Vector, slide: Vector, friction: float) -> Vector:
+    """Return the correction of a contact: the push, and what friction takes of the slide."""
+    stick = min(1.0, friction * push / (_length(slide) + TINY_M))
+    return (
+        push * normal[0] - stick * slide[0],
+        push * normal[1] - stick * slide[1],
+        push * normal[2] - stick * slide[2],
+    )
+
+
+@kernel
 def _touch_self(chain: Chain, near: Neighbours, constants: Constants) -> None:
     """Keep strands apart, with friction.
 
     A strand that has passed through another one's centre line within a step is noticed by the
     direction between them turning over, and is pushed back to the side that it came from.
     """
-    x, before, w = chain.positions, chain.previous, chain.inverse_masses
+    x, before, w, normals = chain.positions, chain.previous, chain.inverse_masses, near.normals
     diameter = 2.0 * constants.radius
     for p in range(near.counts[0]):
         a, b = near.pairs[p, 0], near.pairs[p, 1]
-        s, t = _closest(x[a], x[a + 1], x[b], x[b + 1])
-        nx, ny, nz = 0.0, 0.0, 0.0
-        nx = x[a, 0] + s * (x[a + 1, 0] - x[a, 0]) - x[b, 0] - t * (x[b + 1, 0] - x[b, 0])
-        ny = x[a, 1] + s * (x[a + 1, 1] - x[a, 1]) - x[b, 1] - t * (x[b + 1, 1] - x[b, 1])
-        nz = x[a, 2] + s * (x[a + 1, 2] - x[a, 2]) - x[b, 2] - t * (x[b + 1, 2] - x[b, 2])
-        gap = np.sqrt(nx * nx + ny * ny + nz * nz)
-        old = near.normals[p]
-        if gap > 1e-9:
-            nx, ny, nz = nx / gap, ny / gap, nz / gap
-            if nx * old[0] + ny * old[1] + nz * old[2] < 0.0 and gap < diameter:
-                nx, ny, nz, gap = -nx, -ny, -nz, -gap
-        else:
-            nx, ny, nz = old[0], old[1], old[2]
-        old[0], old[1], old[2] = nx, ny, nz
-        if gap >= diameter:
+        s, t = _closest(_at(x, a), _at(x, a + 1), _at(x, b), _at(x, b + 1))
+        gap = _gap(x, a, s, b, t)
+        distance = _length(gap)
+        normal = _at(normals, p)
+        if distance > 1e-9:
+            side = -1.0 if _dot(gap, normal) < 0.0 and distance < diameter else 1.0
+            distance *= side
+            normal = gap[0] / distance, gap[1] / distance, gap[2] / distance
+            normals[p, 0], normals[p, 1], normals[p, 2] = normal
+        if distance >= diameter:
             continue
+        slide = _sideways(_minus(gap, _gap(before, a, s, b, t)), normal)
+        push = min(diameter - distance, LARGEST_PUSH_M)
+        total = _with_friction(push, normal, slide, constants.friction_self)
         weight = w[a] * (1.0 - s) ** 2 + w[a + 1] * s**2 + w[b] * (1.0 - t) ** 2 + w[b + 1] * t**2
-        push = min(diameter - gap, LARGEST_PUSH_M)
-        px, py, pz = push * nx, push * ny, push * nz
-        slide = np.empty(3)
-        for k in range(3):
-            slide[k] = (
-                (1.0 - s) * (x[a, k] - before[a, k])
-                + s * (x[a + 1, k] - before[a + 1, k])
-                - (1.0 - t) * (x[b, k] - before[b, k])
-                - t * (x[b + 1, k] - before[b + 1, k])
-            )
-        normal_part = slide[0] * nx + slide[1] * ny + slide[2] * nz
-        slide[0] -= normal_part * nx
-        slide[1] -= normal_part * ny
-        slide[2] -= normal_part * nz
-        length = np.sqrt(_dot(slide, slide)) + 1e-15
-        stick = min(1.0, constants.friction_self * push / length)
-        slide[0] = (px - stick * slide[0]) / weight
-        slide[1] = (py - stick * slide[1]) / weight
-        slide[2] = (pz - stick * slide[2]) / weight
-        for k in range(3):
-            x[a, k] += w[a] * (1.0 - s) * slide[k]
-            x[a + 1, k] += w[a + 1] * s * slide[k]
-            x[b, k] -= w[b] * (1.0 - t) * slide[k]
-            x[b + 1, k] -= w[b + 1] * t * slide[k]
+        _add(x, a, w[a] * (1.0 - s) / weight, total)
+        _add(x, a + 1, w[a + 1] * s / weight, total)
+        _add(x, b, -w[b] * (1.0 - t) / weight, total)
+        _add(x, b + 1, -w[b + 1] * t / weight, total)
 
 
-@numba.njit(cache=True)
+@kernel
 def _touch_obstacles(
     chain: Chain,
     near: Neighbours,
@@ -474,106 +521,99 @@ def _touch_obstacles(
     x, before, w = chain.positions, chain.previous, chain.inverse_masses
     for p in range(near.counts[1]):
         a, m = near.obstacle_pairs[p, 0], near.obstacle_pairs[p, 1]
-        travel = (obstacles.end[m] - obstacles.start[m]) * share
-        now = obstacles.start[m] * (1.0 - done) + obstacles.end[m] * done
-        s, t = _closest(x[a], x[a + 1], now[:3], now[3:])
-        normal = x[a] + s * (x[a + 1] - x[a]) - now[:3] - t * (now[3:] - now[:3])
-        gap = np.sqrt(_dot(normal, normal)) + 1e-12
-        depth = obstacles.radii[m] + constants.radius - gap
+        first = _obstacle_end(obstacles, m, 0, done)
+        second = _obstacle_end(obstacles, m, 3, done)
+        s, t = _closest(_at(x, a), _at(x, a + 1), first, second)
+        point = _between(_at(x, a), _at(x, a + 1), s)
+        surface = _between(first, second, t)
+        gap = _minus(point, surface)
+        distance = _length(gap) + TINY_M
+        depth = obstacles.radii[m] + constants.radius - distance
         if depth <= 0.0:
             continue
-        normal /= gap
-        surface = travel[:3] + t * (travel[3:] - travel[:3])
-        slide = (1.0 - s) * (x[a] - before[a]) + s * (x[a + 1] - before[a + 1]) - surface
-        push = min(depth, LARGEST_PUSH_M + max(0.0, _dot(surface, normal)))
-        slide -= _dot(slide, normal) * normal
-        length = np.sqrt(_dot(slide, slide)) + 1e-15
-        stick = min(1.0, constants.friction_obstacles * push / length)
+        normal = gap[0] / distance, gap[1] / distance, gap[2] / distance
+        travel = _minus(
+            surface,
+            _between(
+                _obstacle_end(obstacles, m, 0, done - share),
+                _obstacle_end(obstacles, m, 3, done - share),
+                t,
+            ),
+        )
+        moved = _minus(_minus(point, _between(_at(before, a), _at(before, a + 1), s)), travel)
+        push = min(depth, LARGEST_OBSTACLE_PUSH_M + max(0.0, _dot(travel, normal)))
+        slide = _sideways(moved, normal)
+        total = _with_friction(push, normal, slide, constants.friction_obstacles)
         weight = w[a] * (1.0 - s) ** 2 + w[a + 1] * s**2
-        total = (push * normal - stick * slide) / weight
-        for k in range(3):
-            x[a, k] += w[a] * (1.0 - s) * total[k]
-            x[a + 1, k] += w[a + 1] * s * total[k]
+        _add(x, a, w[a] * (1.0 - s) / weight, total)
+        _add(x, a + 1, w[a + 1] * s / weight, total)
 
 
-@numba.njit(cache=True)
+@kernel
 def _hold(
     chain: Chain, rings: Rings, constants: Constants, done: float, step_s: float, share: float
 ) -> None:
     """Keep each held point in its ring; along the cable only as far as friction goes."""
     x, w = chain.positions, chain.inverse_masses
     for r in range(len(rings.arc)):
-        centre = rings.start[r] * (1.0 - done) + rings.end[r] * done
+        centre = _between(_at(rings.start, r), _at(rings.end, r), done)
         i = min(int(rings.arc[r]), len(x) - 2)
         f = rings.arc[r] - i
-        along = x[i + 1] - x[i]
-        length = np.sqrt(_dot(along, along)) + 1e-12
-        along /= length
-        offset = x[i] + f * length * along - centre
-        weight = w[i] * (1.0 - f) ** 2 + w[i + 1] * f**2
+        along = _minus(_at(x, i + 1), _at(x, i))
+        length = _length(along) + TINY_M
+        along = along[0] / length, along[1] / length, along[2] / length
+        offset = _minus(_between(_at(x, i), _at(x, i + 1), f), centre)
         slip = _dot(offset, along)
-        offset -= slip * along
-        aside = np.sqrt(_dot(offset, offset)) + 1e-15
-        push = min(
-            max(aside - rings.clearance[r], 0.0),
-            constants.overload_force * step_s**2 * weight,
-        )
-        bound = rings.grip_force[r] * step_s**2 * weight + rings.friction[r] * push
+        offset = _sideways(offset, along)
+        aside = _length(offset) + TINY_M
+        weight = w[i] * (1.0 - f) ** 2 + w[i + 1] * f**2
+        per_newton = step_s**2 * weight
+        strongest = constants.overload_force * per_newton
+        push = min(max(aside - rings.clearance[r], 0.0), strongest)
+        bound = rings.grip_force[r] * per_newton + rings.friction[r] * push
         stick = min(max(slip, -bound), bound)
-        arc = rings.arc[r]
         if stick != slip:
-            arc = min(
-                max(arc - (slip - stick) / length, rings.arc_limits[r, 0]), rings.arc_limits[r, 1]
-            )
-            if arc in (rings.arc_limits[r, 0], rings.arc_limits[r, 1]):
-                strongest = constants.overload_force * step_s**2 * weight
+            low, high = rings.arc_limits[r, 0], rings.arc_limits[r, 1]
+            rings.arc[r] = min(max(rings.arc[r] - (slip - stick) / length, low), high)
+            if rings.arc[r] in (low, high):
                 stick = min(max(slip, -strongest), strongest)
-            rings.arc[r] = arc
-        total = -(push / aside * offset + stick * along) / weight
-        rings.force[r] += total * (share / step_s**2)
-        for k in range(3):
-            x[i, k] += w[i] * (1.0 - f) * total[k]
-            x[i + 1, k] += w[i + 1] * f * total[k]
+        back = _plus((0.0, 0.0, 0.0), -push / aside / weight, offset)
+        back = _plus(back, -stick / weight, along)
+        _add(rings.force, r, share / step_s**2, back)
+        _add(x, i, w[i] * (1.0 - f), back)
+        _add(x, i + 1, w[i + 1] * f, back)
 
 
-@numba.njit(cache=True)
+@kernel
 def _rest_on_table(chain: Chain, constants: Constants) -> None:
     """Keep nodes on the table, out of its sides, and above the floor."""
     x, before = chain.positions, chain.previous
-    radius = constants.radius
-    normal = np.zeros(3)
     for i in range(len(x)):
-        beyond_x = abs(x[i, 0]) - constants.half_table_x
-        beyond_y = abs(x[i, 1]) - constants.half_table_y
-        normal[:] = 0.0
-        if max(beyond_x, beyond_y) <= 0.0:
-            if x[i, 2] >= radius:
-                continue
-            depth = radius - x[i, 2]
-            side = radius - max(beyond_x, beyond_y)
-            if depth <= side:
-                normal[2] = 1.0
-            else:
-                depth = side
-                axis = 0 if beyond_x > beyond_y else 1
-                normal[axis] = np.sign(x[i, axis])
-        else:
-            if max(beyond_x, beyond_y) < radius and x[i, 2] < radius:
-                normal[0] = max(beyond_x, 0.0) * np.sign(x[i, 0])
-                normal[1] = max(beyond_y, 0.0) * np.sign(x[i, 1])
-                normal[2] = max(x[i, 2], 0.0)
-                distance = np.sqrt(_dot(normal, normal)) + 1e-12
-                depth = radius - distance
-                normal /= distance
-            else:
-                depth = constants.floor_height + radius - x[i, 2]
-                normal[2] = 1.0
-            if depth <= 0.0:
-                continue
-        slide = x[i] - before[i]
-        slide -= _dot(slide, normal) * normal
-        length = np.sqrt(_dot(slide, slide)) + 1e-15
-        stick = min(1.0, constants.friction_table * depth / length)
-        push = min(depth, LARGEST_PUSH_M * 4.0)
-        for k in range(3):
-            x[i, k] += push * normal[k] - stick * slide[k]
+        if x[i, 2] >= constants.radius:
+            continue
+        depth, normal = _depth_in_table(_at(x, i), constants)
+        if depth > 0.0:
+            slide = _sideways(_minus(_at(x, i), _at(before, i)), normal)
+            push = _with_friction(depth, normal, slide, constants.friction_table)
+            _add(x, i, 1.0, push)
+
+
+@kernel
+def _depth_in_table(p: Vector, constants: Constants) -> tuple[float, Vector]:
+    """Return how deep a node is in the table or the floor, and which way is out."""
+    radius = constants.radius
+    beyond_x, beyond_y = abs(p[0]) - constants.half_table_x, abs(p[1]) - constants.half_table_y
+    beyond = max(beyond_x, beyond_y)
+    if beyond >= radius:
+        return constants.floor_height + radius - p[2], (0.0, 0.0, 1.0)
+    out_x, out_y = np.sign(p[0]), np.sign(p[1])
+    if beyond > 0.0:
+        edge = max(beyond_x, 0.0) * out_x, max(beyond_y, 0.0) * out_y, max(p[2], 0.0)
+        distance = _length(edge) + TINY_M
+        normal = edge[0] / distance, edge[1] / distance, edge[2] / distance
+        return radius - distance, normal
+    if radius - p[2] <= radius - beyond:
+        return radius - p[2], (0.0, 0.0, 1.0)
+    if beyond_x > beyond_y:
+        return radius - beyond, (out_x, 0.0, 0.0)
+    return radius - beyond, (0.0, out_y, 0.0)

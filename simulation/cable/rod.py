@@ -159,13 +159,13 @@ class Rod:
             np.array([finger_gap_m, finger_width_m, finger_depth_m]),
             self.parameters,
         )
-        self._near.counts[0] = -1
+        self._near.counts[2] = 1
         return bool(self._hands[hand].strands)
 
     def release_hand(self, hand: str) -> None:
         """Open a hand; nothing happens when it holds nothing."""
         self._known(hand).strands = ()
-        self._near.counts[0] = -1
+        self._near.counts[2] = 1
 
     def held_nodes(self, hand: str) -> tuple[int, ...]:
         """Return the nodes nearest to where a hand holds the cable, one a strand."""
@@ -247,8 +247,9 @@ def _chain(nodes_m: Floats, parameters: RodParameters) -> kernels.Chain:
         tensions=np.zeros(segments),
         peak=np.zeros(1),
         directions=np.zeros((segments, 3)),
-        solution=np.zeros(segments),
-        sweep=np.zeros(segments),
+        diagonal=np.zeros(segments),
+        coupling=np.zeros(segments),
+        impulses=np.zeros(segments),
     )
 
 
@@ -264,8 +265,10 @@ def _neighbours(nodes: int, capsules: int) -> kernels.Neighbours:
         order=np.arange(nodes - 1),
         pairs=np.zeros((room, 2), dtype=np.int64),
         normals=np.zeros((room, 3)),
+        old_normals=np.zeros((room, 3)),
+        places=np.zeros((nodes - 1, nodes - 1), dtype=np.int64),
         obstacle_pairs=np.zeros((room, 2), dtype=np.int64),
-        counts=np.array([-1, 0]),
+        counts=np.array([0, 0, 1]),
     )
 
 
@@ -304,6 +307,8 @@ def _rings(
         grip_force=np.zeros(count),
         friction=np.zeros(count),
         force=np.zeros((count, 3)),
+        guided=np.zeros(count, dtype=np.int64),
+        guides=np.zeros((count, 6)),
     )
     for r, (hand, strand) in enumerate(strands):
         rings.start[r], rings.end[r] = hand.strand_path(strand, duration_s)
