@@ -167,6 +167,7 @@ class _Builder:
         self._clock, self._blackboard = clock, blackboard
         self.nodes: list[NodeInfo | None] = []
         self.faults: list[Fault] = []
+        self._guard_paths: set[str] = set()
 
     def build(self, spec: NodeSpec, place: _Place) -> Behaviour:
         """Build a node and everything below it."""
@@ -175,9 +176,17 @@ class _Builder:
         index = self._reserve()
         child = self._bare(spec, _Place(place.path, index, place.scope, place.tree))
         behaviour = guard(spec.model, place.name, place.path, child, place.scope)
-        site = _Place(f"{place.path}.guard", place.parent, place.scope, place.tree)
+        site = _Place(self._guard_path(place.path), place.parent, place.scope, place.tree)
         self._fill(index, spec, site, behaviour, "guard")
         return behaviour
+
+    def _guard_path(self, path: str) -> str:
+        """Return a path for a guard; a subtree and the root in its place may both have one."""
+        path = f"{path}.guard"
+        while path in self._guard_paths:
+            path = f"{path}.guard"
+        self._guard_paths.add(path)
+        return path
 
     def _bare(self, spec: NodeSpec, place: _Place) -> Behaviour:
         if isinstance(spec.model, SubtreeNode):

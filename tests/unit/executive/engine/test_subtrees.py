@@ -99,6 +99,14 @@ def test_root_of_a_subtree_stands_in_its_place_under_the_name_that_uses_it(inner
     ]
 
 
+def test_guards_of_a_subtree_and_of_its_root_are_two_nodes(bench):
+    bench.write_root("{skill: find, if: 1 < 2}", name="u")
+    tree = bench.build("sequence: [{subtree: u, unless: 1 > 2}]")
+    assert [node.path for node in tree.nodes] == ["t", "t/u.guard.guard", "t/u.guard", "t/u"]
+    assert [node.parent for node in tree.nodes] == [None, 0, 1, 2]
+    assert bench.tick() == ["SUCCESS"]
+
+
 def test_a_tree_that_contains_itself_is_refused(bench):
     bench.write_root("{subtree: b}", name="a")
     bench.write_root("{subtree: a}", name="b")
