@@ -30,12 +30,7 @@ class JunctionConfig:
         near_widths: Where on an arm its direction is measured from.
         far_widths: And to where.
         bend_cost: Cost of bending energy, the integral of curvature squared, times width.
-        free_curvature: Curvature times width that costs nothing more.
-        sharp_cost: Cost of the square of what goes beyond it.
-        bent_widths: And to where its curvature is.
-        curvature_change: Usual change of curvature of a straight strand, times width.
-        bent_change: How much more it is for a bent one, as a share of its curvature.
-        most_change_cost: Limit of the cost of such a change.
+        outlier_cost: From about here on a cost grows slower.
         loose_cost: Cost of a strand that ends at a junction.
         hairpin_cost: Cost of a strand that turns back where two strands merge.
         most_arms: Nodes with more arms are paired greedily.
@@ -46,13 +41,8 @@ class JunctionConfig:
     thick_ratio: float = 1.25
     near_widths: float = 0.8
     far_widths: float = 3.2
-    bent_widths: float = 6.0
-    curvature_change: float = 0.09
-    bent_change: float = 0.7
-    most_change_cost: float = 4.0
-    bend_cost: float = 3.0
-    free_curvature: float = 0.5
-    sharp_cost: float = 12.0
+    bend_cost: float = 37.0
+    outlier_cost: float = 8.0
     loose_cost: float = 7.0
     hairpin_cost: float = 2.0
     most_arms: int = 8
@@ -166,38 +156,14 @@ def _groups(graph: SkeletonGraph, bridges: frozenset[int]) -> list[tuple[int, ..
     return [tuple(sorted(group)) for group in nx.connected_components(joined)]
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Ray:
-    """How a strand leaves a junction along one arm.
-
-    Attributes:
-        point_px: A point on the arm near the junction, shape (2,).
-        direction: Unit direction away from the junction there, shape (2,).
-        curvature: Turn for each pixel on the way out, positive from x to y; 0 where the arm is
-            too short to tell.
-        curvature_known: Whether the arm is long enough.
-    """
-
-    point_px: Points
-    direction: Points
-    curvature: float
-    curvature_known: bool
-
-
-def arm_ray(edge: Edge, end: int, width_px: float, config: JunctionConfig) -> Ray:
-    """Return how a strand leaves a junction along one end of an edge."""
+def arm_ray(edge: Edge, end: int, near_px: float, far_px: float) -> tuple[Points, Points]:
+    """Return a point on an arm near its node, and the unit direction away from the node."""
     points = edge.from_end(end)
     along = arc_lengths(points)
-    far = min(config.far_widths * width_px, along[-1])
-    near = min(config.near_widths * width_px, 0.4 * far)
+    far = min(far_px, along[-1])
+    near = min(near_px, 0.4 * far)
     a, b = point_at(points, along, np.array([near, far]))
-    direction = (b - a) / max(float(np.linalg.norm(b - a)), 1e-9)
-    bent = min(config.bent_widths * width_px, along[-1])
-    if bent < 0.7 * config.bent_widths * width_px:
-        return Ray(a, direction, 0.0, curvature_known=False)
-    first, second = np.diff(point_at(points, along, np.linspace(near, bent, 3)), axis=0)
-    curvature = turn_rad(first, second) / (0.5 * (bent - near))
-    return Ray(a, direction, curvature, curvature_known=True)
+    return a, (b - a) / max(float(np.linalg.norm(b - a)), 1e-9)
 
 
 def turn_rad(a: Points, b: Points) -> float:
@@ -220,10 +186,10 @@ class _OptionMaker:
     def options(self, arms: tuple[Arm, ...]) -> tuple[Option, ...]:
         if len(arms) == 1:
             return (Option(0.0, (), arms),)
-        rays = {
-            arm: arm_ray(self.graph.edges[arm[0]], arm[1], self.width_px, self.config)
-            for arm in arms
-        }
+        near_px, far_px = (
+            widths * self.width_px for widths in (self.config.near_widths, self.config.far_widths)
+        )
+        rays = {arm: arm_ray(self.graph.edges[arm[0]], arm[1], near_px, far_px) for arm in arms}
         tips = [arm for arm in arms if self._is_tip(arm)]
         costs = {
             (a, b): self._bend_cost(rays[a], rays[b], bool(tips) and len(arms) == 3)
@@ -244,26 +210,25 @@ class _OptionMaker:
         dead = len(self.graph.arms[edge.nodes[1 - arm[1]]]) == 1
         return dead and self.thick[arm[0]] and edge.length_px < 4.0 * self.width_px
 
-    def _bend_cost(self, a: Ray, b: Ray, hairpin: bool) -> float:
+    def _bend_cost(
+        self, a: tuple[Points, Points], b: tuple[Points, Points], hairpin: bool
+    ) -> float:
         """Return the cost of a strand that comes in along one arm and goes on along another.
 
         A cubic with end slopes p and q to its chord of length L has the bending energy
-        4 (p^2 - p q + q^2) / L and the end curvatures 2 (2 p - q) / L and 2 (2 q - p) / L.
+        4 (p^2 - p q + q^2) / L. Energy predicts where strands go better than turn or curvature
+        do (multinomial fit to 539 crossings in rendered images).
         """
-        chord = b.point_px - a.point_px
-        p, q = turn_rad(-a.direction, chord), turn_rad(chord, b.direction)
+        chord = b[0] - a[0]
+        p, q = turn_rad(-a[1], chord), turn_rad(chord, b[1])
         length_px = max(float(np.linalg.norm(chord)), self.width_px) * _arc_over_chord(p, q)
         energy = 4.0 * (p * p - p * q + q * q) / length_px * self.width_px
-        sharpest = 2.0 * max(abs(2.0 * p - q), abs(2.0 * q - p)) / length_px * self.width_px
-        beyond = max(sharpest - self.config.free_curvature, 0.0)
-        cost = self.config.bend_cost * energy + self.config.sharp_cost * beyond**2
-        if a.curvature_known and b.curvature_known:
-            # Walked inwards, an arm bends the other way than walked outwards.
-            change = abs(a.curvature + b.curvature) * self.width_px
-            bent = max(abs(a.curvature), abs(b.curvature)) * self.width_px
-            usual = self.config.curvature_change + self.config.bent_change * bent
-            cost += min(0.5 * (change / usual) ** 2, self.config.most_change_cost)
+        cost = self._tempered(self.config.bend_cost * energy)
         return min(cost, self.config.hairpin_cost) if hairpin else cost
+
+    def _tempered(self, cost: float) -> float:
+        """Return a cost that grows slower where it is large, as outliers do happen."""
+        return self.config.outlier_cost * math.log1p(cost / self.config.outlier_cost)
 
 
 def _arc_over_chord(p: float, q: float) -> float:
