@@ -5,7 +5,7 @@ is followed with the elbow as it comes, pushed away from joint limits; where tha
 limit or in a collision, variants with a steady swing to either side are tried.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from itertools import product
@@ -18,13 +18,14 @@ from robots.interfaces import Arm, Floats
 from robots.motion.ik import solve_pose
 from robots.motion.model import SINGULAR_ZONE, ArmKinematics, RobotModel
 
-SAMPLE_SPACING_M = 0.005
+SAMPLE_SPACING_M = 0.008
 _LEAST_SAMPLES = 4
-_SWINGS_RAD = (0.02, -0.02, 0.05, -0.05)  # of the elbow's free motion, a sample
-_LARGEST_STEP_RAD = 0.25  # between samples; more means that the arm jumps to another branch
+_SWINGS_RAD = (0.03, -0.03, 0.08, -0.08)  # of the elbow's free motion, a sample
+_LARGEST_STEP_RAD = 0.4  # between samples; more means that the arm jumps to another branch
 _LIMIT_ZONE_RAD = 0.35
-_LARGEST_PUSH_RAD = 0.05
+_LARGEST_PUSH_RAD = 0.08
 _PROBE_RAD = 0.02
+_BLUR_SAMPLES = 5.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -62,21 +63,51 @@ def follow_line(
         count: Steps to cut the line into.
         swing_rad: Motion of the elbow that is added at each step [rad].
     """
+    T_start = arm.tcp_pose(start_rad)
+    ways = T_start.translation + np.linspace(0.0, 1.0, count + 1)[:, None] * displacement_m
+    poses = [pin.SE3(T_start.rotation, way) for way in ways]
+    samples = _swing_along(arm, start_rad, poses, swing_rad)
+    if len(samples) < len(poses):
+        return ArmLine(samples, complete=False)
+    smooth = _smoothed(arm, samples, poses)
+    return ArmLine(samples if smooth is None else smooth, complete=True)
+
+
+def _swing_along(
+    arm: ArmKinematics, start_rad: Floats, poses: Sequence[pin.SE3], swing_rad: float
+) -> Floats:
+    """Return the configurations up to the first pose that cannot be reached from the last."""
     q = start_rad
     samples = [q]
-    T_start = arm.tcp_pose(q)
     free: Floats | None = None
-    for number in range(1, count + 1):
-        way = T_start.translation + displacement_m * (number / count)
+    for pose in poses[1:]:
         free = _free_direction(arm, q, free)
         swing = swing_rad + _push(arm, q, free)
         swung = np.clip(q + swing * free, arm.lower, arm.upper)
-        following = solve_pose(arm, pin.SE3(T_start.rotation, way), swung)
+        following = solve_pose(arm, pose, swung)
         if following is None or np.abs(following - q).max() > _LARGEST_STEP_RAD:
-            return ArmLine(np.array(samples), complete=False)
+            break
         samples.append(following)
         q = following
-    return ArmLine(np.array(samples), complete=True)
+    return np.array(samples)
+
+
+def _smoothed(arm: ArmKinematics, samples: Floats, poses: Sequence[pin.SE3]) -> Floats | None:
+    """Spread sudden swings over the line: blur the joint positions, then restore the poses.
+
+    Odd reflection at both ends leaves the first sample where it is.
+    """
+    width = min(_BLUR_SAMPLES, len(samples) / 4)
+    reach = min(ceil(3 * width), len(samples) - 1)
+    weights = np.exp(-0.5 * (np.arange(-reach, reach + 1) / width) ** 2)
+    before = 2 * samples[0] - samples[reach:0:-1]
+    after = 2 * samples[-1] - samples[-2 : -reach - 2 : -1]
+    padded = np.concatenate([before, samples, after])
+    windows = np.lib.stride_tricks.sliding_window_view(padded, 2 * reach + 1, axis=0)
+    blurred = np.clip(windows @ (weights / weights.sum()), arm.lower, arm.upper)
+    restored = [solve_pose(arm, pose, q) for pose, q in zip(poses, blurred, strict=True)]
+    whole = [q for q in restored if q is not None]
+    return np.array(whole) if len(whole) == len(restored) else None
 
 
 def line_variants(
