@@ -1,0 +1,138 @@
+"""Follow a cable with a network that says where it goes on, keeping several ways open.
+
+After thesis 3.1: the path so far and the image around its last point go into a small U-Net,
+which answers with a heat map of the next point. The thesis takes its maximum; here every
+distinct mode starts a path of its own, and the likeliest paths go on side by side.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path as FilePath
+
+import numpy as np
+
+from perception.cable.tracers.centre_line import arc_lengths, point_at
+from perception.cable.tracers.modes import find_modes
+from perception.cable.tracers.paths import Path, checked
+from perception.cable.tracers.rivals import RivalConfig, reduced
+from perception.cable.tracers.steps import StepModel, TracingView, make_view
+from perception.cable.types import Endpoint, Points, Trace, TraceEnd
+from perception.cable.width import mask_under
+from perception.camera import GreyImage
+from perception.models.frames import ScaledImage
+from perception.models.tracer_crop import STEP
+
+
+@dataclass(frozen=True, slots=True)
+class LearnedTracerConfig:
+    """Settings of the search.
+
+    Attributes:
+        beam: How many paths go on side by side.
+        modes: How many ways a path may go on in one step.
+        least: Ways less likely than this are not followed.
+        lost: Without any way or end more likely than this, a path is lost.
+        window: Paths less likely than the best by this factor are dropped [nats].
+        most_steps: Longest trace.
+        rivals: How paths that meet again are compared.
+    """
+
+    beam: int = 6
+    modes: int = 3
+    least: float = 0.03
+    lost: float = 0.08
+    window: float = 6.0
+    most_steps: int = 600
+    rivals: RivalConfig = field(default_factory=RivalConfig)
+
+
+class LearnedTracer:
+    """Follows one cable with a trained network.
+
+    Args:
+        folder: A trained version, see `perception.models.store`.
+        config: Settings of the search.
+    """
+
+    def __init__(self, folder: FilePath, config: LearnedTracerConfig | None = None) -> None:
+        self._model = StepModel(folder)
+        self._config = config or LearnedTracerConfig()
+
+    def trace(
+        self, image: GreyImage, start_px: Points, endpoints: Sequence[Endpoint]
+    ) -> Trace | None:
+        """Follow the cable that starts at `start_px`; see `Tracer.trace`."""
+        start_px = np.atleast_2d(np.asarray(start_px, dtype=float))
+        mask = mask_under(image, start_px)
+        if mask is None:
+            return None
+        view = make_view(image, mask)
+        ends = np.array([end.position_px for end in endpoints]).reshape(-1, 2)
+        far = np.linalg.norm(ends - start_px[0], axis=1) > 3.0 * mask.width_px
+        starts = self._starts(view.image.into(start_px), endpoints, view.image)
+        best = self._search(view, starts, view.image.into(ends[far]))[0]
+        return Trace(
+            points_px=view.image.back(best.points),
+            end=best.end or TraceEnd.LOST,
+            probability=float(np.exp(best.log_probability)),
+        )
+
+    def _starts(
+        self, points: Points, endpoints: Sequence[Endpoint], scaled: ScaledImage
+    ) -> list[Path]:
+        """Return first paths: one, or one for each direction where none is known."""
+        if len(points) > 1:
+            return [_fresh(_even(points))]
+        known = [
+            end.direction
+            for end in endpoints
+            if np.linalg.norm(scaled.into(end.position_px) - points[0]) < STEP
+        ]
+        turns = np.linspace(0.0, 2.0 * np.pi, 16, endpoint=False)
+        ways = known[:1] or list(np.column_stack([np.cos(turns), np.sin(turns)]))
+        return [_fresh(np.vstack([points[0] - STEP * way, points[0]])) for way in ways]
+
+    def _search(self, view: TracingView, starts: list[Path], ends: Points) -> list[Path]:
+        """Return ended paths, likeliest first."""
+        alive, done = starts, list[Path]()
+        for _ in range(self._config.most_steps):
+            if not alive:
+                break
+            ahead = [checked(path, view.image, ends) for path in self._expand(view, alive)]
+            rivals = reduced(done + ahead, self._config.rivals)
+            floor = rivals[0].log_probability - self._config.window
+            rivals = [path for path in rivals if path.log_probability > floor]
+            done = [path for path in rivals if path.end is not None]
+            alive = [path for path in rivals if path.end is None][: self._config.beam]
+        done += [path.ended(TraceEnd.LOST) for path in alive]
+        return sorted(done, key=lambda path: -path.log_probability)
+
+    def _expand(self, view: TracingView, paths: list[Path]) -> list[Path]:
+        """Return every way in which paths may go on or end."""
+        config = self._config
+        ahead = []
+        for path, outlook in zip(paths, self._model.outlooks(view, paths), strict=True):
+            modes = find_modes(outlook.cells, config.least, config.modes)
+            ahead += [
+                path.extended(outlook.frame.back(mode.point_crop), mode.probability)
+                for mode in modes
+            ]
+            if outlook.end > config.least:
+                ahead.append(path.ended(TraceEnd.ENDPOINT, outlook.end))
+            if max([outlook.end, *(mode.probability for mode in modes)]) < config.lost:
+                ahead.append(path.ended(TraceEnd.LOST, config.lost))
+        return ahead
+
+
+def _fresh(points: Points) -> Path:
+    """Return a path before any choice."""
+    return Path(points, np.zeros(len(points)))
+
+
+def _even(points: Points) -> Points:
+    """Return points one step apart that end at the last one."""
+    along = arc_lengths(points)
+    arcs = along[-1] - STEP * np.arange(int(along[-1] / STEP) + 1)
+    if len(arcs) < 2:
+        arcs = along[[-1, 0]]
+    return point_at(points, along, arcs[::-1])

@@ -1,0 +1,114 @@
+"""Partial traces of a search: where they are, how likely, and whether they must end."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from perception.cable.types import TraceEnd
+from perception.models.frames import ScaledImage
+from perception.models.tracer_crop import STEP, WIDTH
+
+Floats = NDArray[np.float64]
+
+# A path that runs along itself for this many points goes over the same cable again.
+REPEATED = 8
+REPEAT_DISTANCE = 0.75 * WIDTH
+# Cable does not lie on itself for so long; such a path went wrong somewhere.
+REPEAT_PROBABILITY = 0.02
+ENDPOINT_DISTANCE = 2.2 * WIDTH
+EDGE_MARGIN = 0.5 * WIDTH
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Path:
+    """A partial trace in the scaled image.
+
+    Attributes:
+        points: About one step apart, shape (N, 2), N >= 2.
+        logs: Logarithm of the probability of all choices up to each point, shape (N,).
+        end: Why it has ended, None while it goes on.
+    """
+
+    points: Floats
+    logs: Floats
+    end: TraceEnd | None = None
+
+    @property
+    def heading(self) -> Floats:
+        """Unit vector of the last step."""
+        step = self.points[-1] - self.points[-2]
+        direction: Floats = step / max(float(np.linalg.norm(step)), 1e-9)
+        return direction
+
+    @property
+    def log_probability(self) -> float:
+        """Logarithm of the probability of all choices."""
+        return float(self.logs[-1])
+
+    def extended(self, point: Floats, probability: float) -> "Path":
+        """Return the path with one more point."""
+        logs = np.append(self.logs, self.logs[-1] + np.log(probability))
+        return Path(np.vstack([self.points, point]), logs)
+
+    def ended(self, end: TraceEnd, probability: float = 1.0) -> "Path":
+        """Return the path as one that has ended."""
+        logs = self.logs.copy()
+        logs[-1] += np.log(probability)
+        return replace(self, end=end, logs=logs)
+
+    def shortened(self, points: int) -> "Path":
+        """Return the path without its last points."""
+        return replace(self, points=self.points[:-points], logs=self.logs[:-points])
+
+    def joined(self, other: "Path", place: int) -> "Path":
+        """Return this path continued by what comes after point `place` of another one."""
+        ahead = other.logs[place + 1 :] - other.logs[place]
+        return Path(
+            np.vstack([self.points, other.points[place + 1 :]]),
+            np.concatenate([self.logs, self.logs[-1] + ahead]),
+            other.end,
+        )
+
+
+def checked(path: Path, image: ScaledImage, ends: Floats) -> Path:
+    """Return the path, ended where it reaches an end of a cable, the border or itself."""
+    if path.end is not None:
+        return path
+    here = path.points[-1]
+    rows, columns = image.pixels.shape
+    size = np.array([columns, rows])
+    if (here < EDGE_MARGIN).any() or (here > size - 1 - EDGE_MARGIN).any():
+        return path.ended(TraceEnd.EDGE)
+    if len(ends):
+        gaps = np.linalg.norm(ends - here, axis=1)
+        nearest = int(gaps.argmin())
+        if gaps[nearest] < ENDPOINT_DISTANCE:
+            return path.extended(ends[nearest], 1.0).ended(TraceEnd.ENDPOINT)
+    if repeats(path.points):
+        return path.shortened(REPEATED).ended(TraceEnd.RETRACE, REPEAT_PROBABILITY)
+    return path
+
+
+def repeats(points: Floats) -> bool:
+    """Say whether the last points run along earlier ones, either way round."""
+    if len(points) < 2 * REPEATED + 2:
+        return False
+    last, earlier = points[-REPEATED:], points[: -REPEATED - 2]
+    for index in np.flatnonzero(np.linalg.norm(earlier - last[0], axis=1) < 1.2 * STEP):
+        ahead = earlier[max(index - 1, 0) : index + REPEATED + 1]
+        behind = earlier[max(index - REPEATED, 0) : index + 2]
+        for line in (ahead, behind):
+            if len(line) >= REPEATED and distances(last, line).max() < REPEAT_DISTANCE:
+                return True
+    return False
+
+
+def distances(points: Floats, line: Floats) -> Floats:
+    """Return the distance of each point from a polyline, shape (N,)."""
+    start, along = line[:-1], np.diff(line, axis=0)
+    squares = np.maximum((along**2).sum(1), 1e-9)
+    offsets = points[:, None] - start[None]
+    shares = np.clip((offsets * along).sum(2) / squares, 0.0, 1.0)
+    gaps: Floats = np.linalg.norm(offsets - shares[:, :, None] * along, axis=2).min(axis=1)
+    return gaps

@@ -1,0 +1,1 @@
+"""Networks, and one folder for each trained version of them."""

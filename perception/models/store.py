@@ -1,0 +1,75 @@
+"""Read trained versions: a folder with weights, config, recipe, figures and a card."""
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+import torch
+from pydantic import BaseModel, ConfigDict
+from safetensors.torch import load_file
+from torch import nn
+from torch.nn.utils.fusion import fuse_conv_bn_eval
+
+from executive.core.errors import InputError
+from perception.models.crossing_net import CrossingNet
+from perception.models.tracer_net import TracerNet
+
+FOLDER = Path(__file__).parent
+NETWORKS: dict[str, Callable[[Sequence[int]], nn.Module]] = {
+    "tracer": TracerNet,
+    "crossing": CrossingNet,
+}
+
+
+class ModelConfig(BaseModel):
+    """The file `config.json` of a trained version.
+
+    Attributes:
+        network: Which network.
+        widths: Its numbers of channels.
+        temperature: What its logits are divided by, from held-out data.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    network: str
+    widths: tuple[int, ...]
+    temperature: float = 1.0
+
+
+def read_config(folder: Path) -> ModelConfig:
+    """Read the config of a trained version."""
+    return ModelConfig.model_validate_json((folder / "config.json").read_text())
+
+
+def load_network(folder: Path) -> nn.Module:
+    """Return a trained network, ready to run, its normalisations folded into convolutions.
+
+    Raises:
+        InputError: The config names a network that does not exist.
+    """
+    config = read_config(folder)
+    if config.network not in NETWORKS:
+        known = ", ".join(sorted(NETWORKS))
+        raise InputError(
+            f"{folder / 'config.json'}: network: unknown; got {config.network!r}; "
+            f"expected one of the networks (known: {known})"
+        )
+    network = NETWORKS[config.network](config.widths)
+    network.load_state_dict(load_file(folder / "weights.safetensors"))
+    network.eval()
+    _fold(network)
+    return network.to(memory_format=torch.channels_last)
+
+
+def _fold(module: nn.Module) -> None:
+    """Replace each convolution and its normalisation by one convolution, in place."""
+    for child in module.children():
+        if (
+            isinstance(child, nn.Sequential)
+            and isinstance(child[0], nn.Conv2d)
+            and isinstance(child[1], nn.BatchNorm2d)
+        ):
+            child[0] = fuse_conv_bn_eval(child[0], child[1])
+            child[1] = nn.Identity()
+        else:
+            _fold(child)

@@ -1,0 +1,1 @@
+"""Train the learned parts of perception on images that are made here, never on photographs."""

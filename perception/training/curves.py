@@ -1,0 +1,124 @@
+"""Centre lines of cables lying on a table, in three families, all lengths in cable widths."""
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
+from scipy.ndimage import gaussian_filter1d
+
+Points = NDArray[np.float64]
+
+SPACING = 0.5
+
+
+def resample(points: Points, spacing: float = SPACING) -> Points:
+    """Return points at equal arc distances along a polyline, both ends kept."""
+    steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
+    along = np.concatenate([[0.0], np.cumsum(steps)])
+    count = max(round(float(along[-1]) / spacing) + 1, 2)
+    targets = np.linspace(0.0, along[-1], count)
+    return np.column_stack([np.interp(targets, along, axis) for axis in points.T])
+
+
+def through(waypoints: Points, stiffness: float) -> Points:
+    """Return a smooth curve near waypoints; `stiffness` is the length it is smoothed over."""
+    chords = np.linalg.norm(np.diff(waypoints, axis=0), axis=1)
+    at = np.concatenate([[0.0], np.cumsum(np.sqrt(chords) + 1e-6)])
+    fine = np.linspace(0.0, at[-1], 40 * len(waypoints))
+    curve = resample(CubicSpline(at, waypoints)(fine))
+    smooth = gaussian_filter1d(curve, stiffness / SPACING, axis=0, mode="nearest")
+    return resample(smooth)
+
+
+def random_curve(rng: np.random.Generator, extent: float) -> Points:
+    """Return a curve through points that keep an exclusion radius from each other."""
+    radius = extent * rng.uniform(0.08, 0.3)
+    wanted = int(rng.integers(4, 13))
+    chosen: list[Points] = []
+    for _ in range(12 * wanted):
+        point = rng.uniform(-0.1, 1.1, 2) * extent
+        if all(np.linalg.norm(point - other) > radius for other in chosen[-3:]):
+            chosen.append(point)
+        if len(chosen) == wanted:
+            break
+    return through(np.array(chosen), rng.uniform(0.7, 2.5))
+
+
+def dense_curve(rng: np.random.Generator, extent: float) -> Points:
+    """Return a curve that winds within a small disc and has two tails."""
+    middle = rng.uniform(0.3, 0.7, 2) * extent
+    size = rng.uniform(3.5, 13.0)
+    inner = _template(rng) if rng.random() < 0.6 else _scribble(rng)
+    turn = rng.uniform(0.0, 2.0 * np.pi)
+    rotation = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
+    stretch = np.diag([1.0, rng.uniform(0.5, 1.0)]) * size
+    knot = inner @ stretch @ rotation.T + middle
+    knot += rng.normal(0.0, 0.06 * size, knot.shape)
+    return through(
+        np.vstack(
+            [_tail(rng, knot[0], middle, extent)[::-1], knot, _tail(rng, knot[-1], middle, extent)]
+        ),
+        rng.uniform(0.4, 1.2),
+    )
+
+
+def _template(rng: np.random.Generator) -> Points:
+    """Return waypoints of a wound curve a cos(nt) + b cos(mt), as diagrams of knots are."""
+    turns = rng.choice(4)
+    wide, narrow = ((1, 2), (2, 3), (1, 3), (2, 1))[turns]
+    span = rng.uniform(1.2, 2.0) * np.pi
+    angle = rng.uniform(0.0, 2.0 * np.pi) + np.linspace(0.0, span, int(rng.integers(9, 15)))
+    share = rng.uniform(0.35, 1.3)
+    sign = rng.choice([-1.0, 1.0])
+    x = np.cos(wide * angle) + share * np.cos(narrow * angle)
+    y = np.sin(wide * angle) + sign * share * np.sin(narrow * angle)
+    return np.column_stack([x, y]) / (1.0 + share)
+
+
+def _scribble(rng: np.random.Generator) -> Points:
+    angles = np.cumsum(rng.uniform(0.6, 2.8, int(rng.integers(5, 13))) * rng.choice([-1.0, 1.0]))
+    radii = rng.uniform(0.35, 1.0, len(angles))
+    return np.column_stack([radii * np.cos(angles), radii * np.sin(angles)])
+
+
+def _tail(rng: np.random.Generator, start: Points, middle: Points, extent: float) -> Points:
+    """Return waypoints that lead away from a knot."""
+    heading = np.arctan2(*(start - middle)[::-1]) + rng.normal(0.0, 0.6)
+    points = [start]
+    for _ in range(int(rng.integers(2, 6))):
+        heading += rng.normal(0.0, 0.6)
+        step = rng.uniform(0.1, 0.3) * extent
+        points.append(points[-1] + step * np.array([np.cos(heading), np.sin(heading)]))
+    return np.array(points[1:])
+
+
+def parallel_curve(rng: np.random.Generator, extent: float) -> Points:
+    """Return a curve that turns round and runs back close along itself."""
+    there = random_curve(rng, extent)
+    first = int(rng.uniform(0.0, 0.4) * len(there))
+    there = there[first : first + int(rng.uniform(30.0, 90.0) / SPACING)]
+    back = beside(rng, there)[::-1]
+    turn = there[-1] - there[max(len(there) - 8, 0)]
+    bulge = there[-1] + turn / max(float(np.linalg.norm(turn)), 1e-6) * rng.uniform(1.0, 8.0)
+    bulge += rng.normal(0.0, 1.5, 2)
+    waypoints = np.vstack([there[::6], bulge, back[::6]])
+    return through(waypoints, rng.uniform(0.5, 1.2))
+
+
+def beside(rng: np.random.Generator, curve: Points) -> Points:
+    """Return a curve that runs close along another one and now and then changes its side."""
+    tangent = np.gradient(curve, axis=0)
+    tangent /= np.maximum(np.linalg.norm(tangent, axis=1, keepdims=True), 1e-9)
+    normal = np.column_stack([-tangent[:, 1], tangent[:, 0]])
+    wander = gaussian_filter1d(rng.normal(size=len(curve)), rng.uniform(10.0, 40.0), mode="wrap")
+    wander *= rng.uniform(0.3, 2.0) / max(float(wander.std()), 1e-9)
+    offset = wander + rng.choice([-1.0, 1.0]) * rng.uniform(0.0, 2.2)
+    return resample(gaussian_filter1d(curve + normal * offset[:, None], 2.0, axis=0))
+
+
+FAMILIES: dict[str, Callable[[np.random.Generator, float], Points]] = {
+    "random": random_curve,
+    "parallel": parallel_curve,
+    "dense": dense_curve,
+}

@@ -1,0 +1,83 @@
+"""Draw round strands into images, the highest one in front (Numba kernels)."""
+
+import numba
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Images = NDArray[np.float32]
+
+
+@numba.njit(cache=True, fastmath=True)
+def splat(points: Floats, radius: float, label: float, height: Images, surface: Images) -> None:
+    """Draw one strand into a height map and a surface map.
+
+    Args:
+        points: Centre line (x, y, z) [px], shape (N, 3).
+        radius: Half its width [px].
+        label: Number of the cable.
+        height: Height of what is in front, shape (H, W).
+        surface: What is in front: label, place across in [-1, 1], arc length [px], direction
+            of the strand [rad]; shape (H, W, 4).
+    """
+    rows, columns = height.shape
+    along = 0.0
+    for k in range(len(points) - 1):
+        ax, ay, az = points[k]
+        ux, uy, uz = points[k + 1] - points[k]
+        length = np.sqrt(ux * ux + uy * uy) + 1e-9
+        direction = np.arctan2(uy, ux)
+        first_x = max(int(np.floor(min(ax, ax + ux) - radius)), 0)
+        last_x = min(int(np.ceil(max(ax, ax + ux) + radius)), columns - 1)
+        first_y = max(int(np.floor(min(ay, ay + uy) - radius)), 0)
+        last_y = min(int(np.ceil(max(ay, ay + uy) + radius)), rows - 1)
+        for y in range(first_y, last_y + 1):
+            for x in range(first_x, last_x + 1):
+                px, py = x - ax, y - ay
+                share = (px * ux + py * uy) / (length * length)
+                share = min(max(share, 0.0), 1.0)
+                dx, dy = px - share * ux, py - share * uy
+                square = dx * dx + dy * dy
+                if square > radius * radius:
+                    continue
+                top = az + share * uz + np.sqrt(radius * radius - square)
+                if top > height[y, x]:
+                    height[y, x] = top
+                    surface[y, x, 0] = label
+                    surface[y, x, 1] = (px * uy - py * ux) / (length * radius)
+                    surface[y, x, 2] = along + share * length
+                    surface[y, x, 3] = direction
+        along += length
+
+
+@numba.njit(cache=True, fastmath=True)
+def shade(picture: Images, height: Images, surface: Images, shadow: Images, looks: Floats) -> None:
+    """Colour strands and shadows into a picture, in place.
+
+    Args:
+        picture: Grey values, shape (H, W).
+        height: From `splat`; at most 0 where no strand is.
+        surface: From `splat`.
+        shadow: Height of what keeps the light off each pixel, at most 0 for nothing.
+        looks: One row a cable: radius [px], brightness, braid amplitude, braid period [px],
+            braid slope, flank darkening, gloss, light direction [rad], shadow strength.
+    """
+    rows, columns = height.shape
+    for y in range(rows):
+        for x in range(columns):
+            if height[y, x] <= 0.0:
+                if shadow[y, x] > 0.0:
+                    picture[y, x] *= 1.0 - looks[0, 8]
+                continue
+            look = looks[int(surface[y, x, 0])]
+            across, along, direction = surface[y, x, 1], surface[y, x, 2], surface[y, x, 3]
+            flank = 1.0 - look[5] * across * across
+            side = across * np.sin(look[7] - direction)
+            phase = 2.0 * np.pi * along / look[3]
+            slope = look[4] * across
+            braid = look[2] * np.sin(phase + slope) * np.sin(phase - slope)
+            value = look[1] * flank * (1.0 + 0.25 * look[5] * side) * (1.0 + braid)
+            value += look[6] * np.exp(-8.0 * (across - 0.4 * np.sin(look[7] - direction)) ** 2)
+            if shadow[y, x] > height[y, x] + 0.3 * look[0]:
+                value *= 1.0 - look[8]
+            picture[y, x] = value

@@ -1,0 +1,153 @@
+"""Random scenes of one to three cables with exact truth: geometry first, then an image."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import gaussian_filter1d
+
+from perception.camera import GreyImage
+from perception.training import contact, curves
+from perception.training.render import draw_look, render
+
+Floats = NDArray[np.float64]
+
+MOST_NODES = 1400
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SceneCable:
+    """One cable of a scene.
+
+    Attributes:
+        points_px: Centre line, half a cable width apart, shape (N, 2).
+        heights: Height of the centre line above the table [cable widths], shape (N,).
+    """
+
+    points_px: Floats
+    heights: Floats
+
+
+@dataclass(frozen=True, slots=True)
+class SceneCrossing:
+    """Where two strands cross, as cable and node number with fraction; the upper one first."""
+
+    over: tuple[int, float]
+    under: tuple[int, float]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Scene:
+    """An image and everything that is true about it.
+
+    Attributes:
+        image: Grey image.
+        width_px: Width of the cables.
+        cables: Their centre lines.
+        crossings: Where strands cross; those at nearly one height are left out.
+    """
+
+    image: GreyImage
+    width_px: float
+    cables: tuple[SceneCable, ...]
+    crossings: tuple[SceneCrossing, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class SceneConfig:
+    """What scenes to draw; lengths in cable widths unless a name says otherwise.
+
+    Attributes:
+        extent: Side of the square that curves are drawn in.
+        size_px: (height, width) of the image; None for a square of `extent`.
+        narrowest_px: Least width of a cable.
+        widest_px: Greatest width of a cable.
+        family: One family of curves, or None for all.
+        cables: Number of cables, or None for 1 to 3.
+    """
+
+    extent: float = 46.0
+    size_px: tuple[int, int] | None = None
+    narrowest_px: float = 4.0
+    widest_px: float = 14.0
+    family: str | None = None
+    cables: int | None = None
+
+
+def make_scene(rng: np.random.Generator, config: SceneConfig | None = None) -> Scene:
+    """Draw a scene."""
+    config = config or SceneConfig()
+    width_px = float(np.exp(rng.uniform(np.log(config.narrowest_px), np.log(config.widest_px))))
+    side_px = int(config.extent * width_px)
+    size_px = config.size_px or (side_px, side_px)
+    lines = _lines(rng, config)
+    nodes, cable = _settled(rng, lines)
+    parts = [nodes[cable == k] for k in range(len(lines))]
+    origin_px = np.array([size_px[1] - side_px, size_px[0] - side_px]) / 2.0
+    look = draw_look(rng, len(lines))
+    strands = [
+        np.column_stack([part[:, :2] * width_px + origin_px, part[:, 2] * width_px])
+        for part in parts
+    ]
+    image = render(rng, strands, width_px, size_px, look)
+    return Scene(
+        image,
+        width_px,
+        tuple(
+            SceneCable(strand[:, :2], part[:, 2])
+            for strand, part in zip(strands, parts, strict=True)
+        ),
+        _true_crossings(nodes, cable),
+    )
+
+
+def _lines(rng: np.random.Generator, config: SceneConfig) -> list[Floats]:
+    count = config.cables or int(rng.choice([1, 2, 3], p=[0.4, 0.35, 0.25]))
+    lines: list[Floats] = []
+    left = MOST_NODES
+    for _ in range(count):
+        family = config.family or str(rng.choice(list(curves.FAMILIES), p=[0.3, 0.3, 0.4]))
+        if lines and family == "parallel" and rng.random() < 0.6:
+            line = curves.beside(rng, lines[-1])
+        else:
+            line = curves.FAMILIES[family](rng, config.extent)
+        line = line[: max(left, 2)]
+        left -= len(line)
+        if len(line) > 20:
+            lines.append(line)
+    return lines
+
+
+def _settled(rng: np.random.Generator, lines: list[Floats]) -> tuple[Floats, NDArray[np.int64]]:
+    """Choose what lies over what, and part the strands; returns balls and their cables."""
+    xy = np.vstack(lines)
+    cable = np.repeat(np.arange(len(lines)), [len(line) for line in lines])
+    heights = 0.5 + _lifts(rng, cable)
+    in_order = rng.random() < 0.3
+    number = np.arange(len(xy))
+    for first, second in contact.crossings(xy, cable):
+        upper = second if in_order and rng.random() < 0.85 else rng.choice([first, second])
+        heights += 0.7 * np.exp(-(((number - upper) * curves.SPACING / 1.5) ** 2))
+    nodes = np.column_stack([xy, heights])
+    contact.settle(nodes, cable, contact.near_pairs(xy, cable), 40)
+    return nodes, cable
+
+
+def _lifts(rng: np.random.Generator, cable: NDArray[np.int64]) -> Floats:
+    """Return heights of strands that stand up from the table, as stiff cables do."""
+    lifts = np.abs(gaussian_filter1d(rng.normal(size=len(cable)), rng.uniform(8.0, 30.0)))
+    highest = rng.choice([0.15, 1.0, 4.0], p=[0.4, 0.4, 0.2]) * rng.random()
+    return np.asarray(highest * lifts / max(float(lifts.max()), 1e-9))
+
+
+def _true_crossings(nodes: Floats, cable: NDArray[np.int64]) -> tuple[SceneCrossing, ...]:
+    starts = np.searchsorted(cable, np.arange(cable[-1] + 1))
+    found = []
+    for pair in contact.crossings(np.ascontiguousarray(nodes[:, :2]), cable):
+        heights = np.interp(pair, np.arange(len(nodes)), nodes[:, 2])
+        if abs(heights[0] - heights[1]) < 0.5:
+            continue
+        places = [(int(cable[int(at)]), float(at - starts[cable[int(at)]])) for at in pair]
+        over = int(heights[1] > heights[0])
+        found.append(SceneCrossing(places[over], places[1 - over]))
+    return tuple(found)

@@ -1,0 +1,141 @@
+"""Samples for the tracer's network: crops with the path so far, and where the cable goes on."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from perception.cable.tracers.centre_line import arc_lengths, point_at
+from perception.models import tracer_crop
+from perception.models.frames import Crop, Floats, ScaledImage, scale_image, turned_frame
+from perception.models.tracer_crop import make_crop
+from perception.models.tracer_net import HORIZONS
+from perception.training.contact import crossings
+from perception.training.scenes import Scene, SceneConfig, make_scene
+
+NOWHERE = -1000.0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TracerSamples:
+    """A batch.
+
+    Attributes:
+        crops: From `make_crop`, shape (N, 3, S, S).
+        targets: Where the cable is after 1, 2, ... steps, (x, y) in crop pixels, shape
+            (N, HORIZONS, 2); `NOWHERE` where it has ended.
+    """
+
+    crops: Crop
+    targets: Floats
+
+
+@dataclass(frozen=True, slots=True)
+class SampleConfig:
+    """How samples are drawn from scenes.
+
+    Attributes:
+        from_scene: Samples a scene.
+        interesting: Share of samples placed where other strands are near.
+        scale_error: Standard deviation of the logarithm of the cable's assumed width.
+        jitter: Largest standard deviation of points of the path [cable widths].
+        short: Share of samples with a path of one to three points.
+    """
+
+    from_scene: int = 24
+    interesting: float = 0.65
+    scale_error: float = 0.12
+    jitter: float = 0.22
+    short: float = 0.12
+
+
+def sample_stream(
+    seed: int, first: int, stride: int, scenes: SceneConfig, config: SampleConfig
+) -> Iterator[TracerSamples]:
+    """Yield the samples of scenes `first`, `first + stride`, ...; each has a seed of its own."""
+    number = first
+    while True:
+        rng = np.random.default_rng([seed, number])
+        yield scene_samples(rng, make_scene(rng, scenes), config)
+        number += stride
+
+
+def scene_samples(rng: np.random.Generator, scene: Scene, config: SampleConfig) -> TracerSamples:
+    """Draw samples from one scene."""
+    width_px = scene.width_px * float(np.exp(rng.normal(0.0, config.scale_error)))
+    scaled = scale_image(scene.image, width_px, tracer_crop.WIDTH)
+    lines = [scaled.into(cable.points_px) for cable in scene.cables]
+    near = _near_crossings(lines)
+    crops, targets = [], []
+    for _ in range(config.from_scene):
+        which = int(rng.integers(len(lines)))
+        line, places = lines[which], near[which]
+        if len(places) and rng.random() < config.interesting:
+            at = rng.choice(places) + rng.uniform(-18.0, 18.0)
+        else:
+            at = rng.uniform(0.0, len(line) - 1)
+        if rng.random() < 0.5:
+            line, at = line[::-1], len(line) - 1 - at
+        drawn = _draw_sample(rng, scaled, line, at, config)
+        if drawn is not None:
+            crops.append(drawn[0])
+            targets.append(drawn[1])
+    if not crops:
+        return TracerSamples(
+            np.zeros((0, 3, tracer_crop.SIZE, tracer_crop.SIZE), np.float32),
+            np.zeros((0, HORIZONS, 2)),
+        )
+    return TracerSamples(np.stack(crops), np.stack(targets))
+
+
+def _near_crossings(lines: list[Floats]) -> list[Floats]:
+    """Return, for each cable, the node numbers where it crosses a strand."""
+    cable = np.repeat(np.arange(len(lines)), [len(line) for line in lines])
+    starts = np.searchsorted(cable, np.arange(len(lines) + 1))
+    # Crossings are looked for in cable widths, as nodes are half a width apart.
+    places = crossings(np.vstack(lines) / tracer_crop.WIDTH, cable).ravel()
+    return [
+        places[(places >= starts[k]) & (places < starts[k + 1])] - starts[k]
+        for k in range(len(lines))
+    ]
+
+
+def _draw_sample(
+    rng: np.random.Generator,
+    scaled: ScaledImage,
+    line: Floats,
+    at: float,
+    config: SampleConfig,
+) -> tuple[Crop, Floats] | None:
+    along = arc_lengths(line)
+    here = float(np.interp(at, np.arange(len(line)), along))
+    if not 0.0 < here < along[-1] - 0.05 * tracer_crop.STEP:
+        return None
+    known = _known_arcs(rng, here, config)
+    path = point_at(line, along, known)
+    # A trace may start at the very end of a cable; its first step then lies beyond it.
+    outwards = (line[0] - line[1]) / max(float(along[1]), 1e-9)
+    path += np.minimum(known, 0.0)[:, None] * -outwards
+    if not scaled.holds(path[-1]):
+        return None
+    jitter = rng.uniform(0.0, config.jitter) * tracer_crop.WIDTH
+    path = path + rng.normal(0.0, jitter, path.shape)
+    heading = path[-1] - path[-2]
+    unit = heading / max(float(np.linalg.norm(heading)), 1e-9)
+    frame = turned_frame(path[-1], unit, tracer_crop.HERE)
+    ahead = here + tracer_crop.STEP * np.arange(1.0, HORIZONS + 1.0)
+    targets = frame.into(point_at(line, along, ahead))
+    targets[ahead > along[-1]] = NOWHERE
+    return make_crop(scaled, path, frame), targets
+
+
+def _known_arcs(rng: np.random.Generator, here: float, config: SampleConfig) -> Floats:
+    """Return arc positions of the path so far, ending at `here`."""
+    most = max(int(here / (0.8 * tracer_crop.STEP)), 1)
+    if rng.random() < config.short:
+        most = min(most, int(rng.integers(1, 4)))
+    elif rng.random() < 0.5:
+        most = min(most, int(rng.integers(4, 60)))
+    strides = tracer_crop.STEP * rng.uniform(0.8, 1.15, most)
+    back = here - np.concatenate([[0.0], np.cumsum(strides)])
+    return back[: max(int((back >= 0.0).sum()), 2)][::-1]

@@ -1,0 +1,96 @@
+import numpy as np
+import pytest
+
+from perception.cable.tracers.modes import find_modes
+from perception.cable.tracers.paths import Path, checked, distances, repeats
+from perception.cable.tracers.rivals import RivalConfig, meeting, reduced
+from perception.cable.types import TraceEnd
+from perception.models.frames import ScaledImage, turned_frame
+from perception.models.tracer_crop import HERE, STEP, WIDTH
+
+IMAGE = ScaledImage(np.zeros((400, 400), np.uint8), 1.0, 0.0)
+
+
+def _path(points, log=-0.1):
+    points = np.asarray(points, dtype=float)
+    return Path(points, log * np.arange(len(points)))
+
+
+def _line(start, step, count):
+    return np.asarray(start, dtype=float) + np.arange(count)[:, None] * np.asarray(step)
+
+
+def test_modes_share_the_belief():
+    cells = np.zeros((32, 32), np.float32)
+    cells[10, 12], cells[10, 13], cells[20, 5] = 0.4, 0.2, 0.3
+    first, second = find_modes(cells, least=0.05, most=4)
+    assert (first.probability, second.probability) == pytest.approx((0.6, 0.3))
+    assert first.point_crop == pytest.approx([2 * (12 + 1 / 3) + 0.5, 20.5], abs=1e-4)
+    assert second.point_crop == pytest.approx([10.5, 40.5])
+
+
+def test_modes_at_the_border_of_the_map():
+    cells = np.zeros((32, 32), np.float32)
+    cells[0, 31] = 1.0
+    (mode,) = find_modes(cells, least=0.05, most=4)
+    assert mode.point_crop == pytest.approx([62.5, 0.5])
+
+
+def test_frames_go_there_and_back():
+    frame = turned_frame(np.array([40.0, 60.0]), np.array([0.6, 0.8]), HERE)
+    points = np.random.default_rng(0).normal(size=(5, 2))
+    assert frame.back(frame.into(points)) == pytest.approx(points)
+    assert frame.into(np.array([[40.0, 60.0]]))[0] == pytest.approx(HERE)
+    assert frame.into(np.array([[40.6, 60.8]]))[0] == pytest.approx((HERE[0] + 1.0, HERE[1]))
+
+
+def test_distances_to_a_polyline():
+    line = np.array([[0.0, 0.0], [10.0, 0.0], [10.0, 10.0]])
+    assert distances(np.array([[5.0, 2.0], [13.0, 14.0]]), line) == pytest.approx([2.0, 5.0])
+
+
+def test_a_path_ends_at_the_border_and_at_known_ends():
+    out = _path(_line((353.0, 200.0), (STEP, 0.0), 6))
+    assert checked(out, IMAGE, np.zeros((0, 2))).end is TraceEnd.EDGE
+    inside = _path(_line((100.0, 200.0), (STEP, 0.0), 6))
+    assert checked(inside, IMAGE, np.zeros((0, 2))).end is None
+    end = inside.points[-1] + WIDTH
+    ended = checked(inside, IMAGE, end[None])
+    assert ended.end is TraceEnd.ENDPOINT
+    assert ended.points[-1] == pytest.approx(end)
+
+
+def test_going_back_over_oneself_is_noticed_and_crossing_is_not():
+    there = _line((100.0, 100.0), (STEP, 0.0), 15)
+    bend = there[-1] + np.array([[STEP, 4.0], [STEP, 12.0], [0.0, 14.0]])
+    back = _line(there[-1] + (0.0, 1.0), (-STEP, 0.0), 10)
+    across = _line((150.0, 60.0), (0.0, STEP), 10)
+    assert repeats(np.vstack([there, bend, back]))
+    assert not repeats(np.vstack([there, bend, across]))
+
+
+def test_of_two_ways_that_meet_the_likelier_stays():
+    shared = _line((50.0, 100.0), (STEP, 0.0), 5)
+    straight = _line(shared[-1] + (STEP, 0.0), (STEP, 0.0), 12)
+    bow = straight[:6] + np.array([[0.0, 1.0]]) * np.array([4.0, 8, 4, 1, 0, 0.0])[:, None]
+    likely, unlikely = (
+        _path(np.vstack([shared, straight]), -0.1),
+        _path(np.vstack([shared, bow]), -0.3),
+    )
+    assert meeting(unlikely, likely) == 10
+    (kept,) = reduced([unlikely, likely], RivalConfig(gain=0.0))
+    assert kept is likely
+
+
+def test_a_loop_that_only_one_way_explains_counts_for_it():
+    shared = _line((50.0, 200.0), (STEP, 0.0), 5)
+    straight = _line(shared[-1] + (STEP, 0.0), (STEP, 0.0), 8)
+    turns = np.linspace(0.5 * np.pi, -1.5 * np.pi, 16)[1:-1]
+    loop = shared[-1] + (STEP, -24.0) + 24.0 * np.column_stack([np.cos(turns), np.sin(turns)])
+    round_ = np.vstack([shared, loop, straight[:4]])
+    short, long = _path(np.vstack([shared, straight]), -0.05), _path(round_, -0.15)
+    (kept,) = reduced([short, long], RivalConfig(gain=0.0))
+    assert len(kept.points) == 13
+    (kept,) = reduced([short, long], RivalConfig(gain=0.5, most=4.0))
+    assert len(kept.points) == len(round_) + 4
+    assert kept.log_probability == pytest.approx(-0.15 * (len(round_) - 1) - 0.05 * 4)

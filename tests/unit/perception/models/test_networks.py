@@ -1,0 +1,58 @@
+import json
+
+import pytest
+
+torch = pytest.importorskip("torch")
+safetensors = pytest.importorskip("safetensors.torch")
+
+from executive.core.errors import InputError  # noqa: E402  # after the skip
+from perception.models.crossing_net import CrossingNet  # noqa: E402
+from perception.models.store import load_network  # noqa: E402
+from perception.models.tracer_math import cell_targets, step_logits  # noqa: E402
+from perception.models.tracer_net import TracerNet  # noqa: E402
+
+WIDTHS = (8, 8, 16, 16)
+
+
+def _saved(folder, name, network):
+    safetensors.save_file(network.state_dict(), folder / "weights.safetensors")
+    (folder / "config.json").write_text(json.dumps({"network": name, "widths": WIDTHS}))
+
+
+def test_exchanging_strands_changes_the_sign():
+    torch.manual_seed(1)
+    network = CrossingNet(WIDTHS).eval()
+    views = torch.randn(5, 2, 3, 32, 32)
+    assert torch.allclose(network(views), -network(views.flip(1)), atol=1e-5)
+
+
+def test_loading_folds_normalisation_without_changing_answers(tmp_path):
+    torch.manual_seed(2)
+    network = TracerNet(WIDTHS)
+    network.train()(torch.randn(8, 3, 64, 64))
+    _saved(tmp_path, "tracer", network)
+    crops = torch.randn(2, 3, 64, 64)
+    folded = load_network(tmp_path)
+    assert not any(isinstance(part, torch.nn.BatchNorm2d) for part in folded.modules())
+    for ours, theirs in zip(folded(crops), network.eval()(crops), strict=True):
+        assert torch.allclose(ours, theirs, atol=1e-4)
+
+
+def test_an_unknown_network_is_named(tmp_path):
+    _saved(tmp_path, "oracle", CrossingNet(WIDTHS))
+    with pytest.raises(InputError, match=r"'oracle'.*known: crossing, tracer"):
+        load_network(tmp_path)
+
+
+def test_step_logits_have_one_class_for_the_end():
+    heat, stop = TracerNet(WIDTHS).eval()(torch.zeros(2, 3, 64, 64))
+    assert step_logits(heat, stop).shape == (2, 32 * 32 + 1)
+
+
+def test_cell_targets_are_distributions_around_the_point():
+    point = torch.tensor([[33.2, 20.7]])
+    cells = cell_targets(point, 32)[0].view(32, 32)
+    centres = torch.arange(32) * 2 + 0.5
+    assert float(cells.sum()) == pytest.approx(1.0, abs=1e-5)
+    assert float(cells.sum(0) @ centres) == pytest.approx(33.2, abs=0.1)
+    assert float(cells.sum(1) @ centres) == pytest.approx(20.7, abs=0.1)

@@ -1,0 +1,78 @@
+import numpy as np
+import pytest
+
+torch = pytest.importorskip("torch")
+
+from perception.models import tracer_crop  # noqa: E402  # after the skip
+from perception.training.crossing import CrossingTask, crossing_views  # noqa: E402
+from perception.training.scenes import SceneConfig, make_scene  # noqa: E402
+from perception.training.tracer import TracerTask, mirrored  # noqa: E402
+from perception.training.tracer_samples import (  # noqa: E402
+    NOWHERE,
+    SampleConfig,
+    scene_samples,
+)
+
+SMALL = SceneConfig(extent=24.0, narrowest_px=5.0, widest_px=7.0)
+STRAIGHT = SampleConfig(from_scene=40, scale_error=0.0, jitter=0.0)
+
+
+def _samples(seed=2):
+    rng = np.random.default_rng(seed)
+    return scene_samples(rng, make_scene(rng, SMALL), STRAIGHT)
+
+
+def test_targets_lie_one_step_ahead():
+    samples = _samples()
+    first = samples.targets[:, 0]
+    known = first[:, 0] > NOWHERE
+    gaps = np.linalg.norm(first[known] - np.array(tracer_crop.HERE), axis=1)
+    # A bend makes the chord shorter than the arc, and nothing makes it longer.
+    assert gaps.max() < tracer_crop.STEP * 1.01
+    assert np.median(gaps) > tracer_crop.STEP * 0.9
+
+
+def test_path_ends_at_its_place_in_the_crop():
+    column, row = (int(value) for value in tracer_crop.HERE)
+    samples = _samples()
+    assert (
+        samples.crops[:, 1, row : row + 2, column - 1 : column + 1].max(axis=(1, 2)) > 0.5
+    ).all()
+
+
+def test_a_mirror_twice_is_no_mirror():
+    samples = _samples()
+    batch = torch.from_numpy(samples.crops), torch.from_numpy(samples.targets)
+    crops, targets = mirrored(mirrored(batch))
+    assert torch.equal(crops, batch[0])
+    assert torch.allclose(targets, batch[1])
+
+
+def test_loss_falls_on_one_batch():
+    torch.manual_seed(0)
+    task, samples = TracerTask(), _samples()
+    batch = torch.from_numpy(samples.crops[:16]), torch.from_numpy(samples.targets[:16]).float()
+    network = task.network()
+    optimiser = torch.optim.Adam(network.parameters(), 3e-3)
+    losses = []
+    for _ in range(12):
+        loss = task.loss(network, batch)
+        optimiser.zero_grad()
+        loss.backward()
+        optimiser.step()
+        losses.append(float(loss))
+    assert losses[-1] < 0.8 * losses[0]
+
+
+def test_crossing_views_show_both_strands():
+    views = []
+    for seed in range(8):
+        rng = np.random.default_rng(seed)
+        views += crossing_views(rng, make_scene(rng, SMALL))
+    first = np.stack(views)
+    assert first.shape[1:] == (2, 3, 32, 32)
+    # What is the own strand in one view is the other strand in the other one.
+    assert (first[:, :, 1:].max(axis=(3, 4)) > 0.9).mean() > 0.95
+    assert (
+        CrossingTask().metrics(CrossingTask().network(), [(torch.from_numpy(first),)])["loss"] > 0
+    )
