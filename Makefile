@@ -48,9 +48,8 @@ demo: setup ## Untie a knotted cable with the simulated YuMi, and record it
 	$(BIN)/cellwright inspect runs/demo.mcap --plain
 	@echo
 	@echo "Open next:"
-	@echo "  runs/demo.html                              arms, cable and trace, with a time slider"
-	@echo "  $(BIN)/cellwright inspect runs/demo.mcap    step through the ticks"
-	@echo "  runs/demo.mcap                              the recording, also in any MCAP viewer"
+	@echo "  runs/demo.html   in a browser: arms, cable and trace, with a time slider"
+	@echo "  runs/demo.mcap   with $(BIN)/cellwright inspect runs/demo.mcap, tick by tick"
 
 test: setup ## Run all tests
 	$(BIN)/pytest -n auto
