@@ -21,6 +21,7 @@ from perception.cable.types import (
 )
 from perception.camera import CameraFrame
 from skills.cable.account_for_cable import AccountForCable
+from skills.cable.bring_knot import BringKnot
 from skills.cable.classify_crossings import ClassifyCrossings
 from skills.cable.detect_endpoints import DetectEndpoints
 from skills.cable.dilate_knot import DilateKnot
@@ -28,8 +29,8 @@ from skills.cable.find_knots import FindKnots
 from skills.cable.find_start_points import FindStartPoints
 from skills.cable.observe_workspace import ObserveWorkspace
 from skills.cable.orient_trace import OrientTrace
+from skills.cable.perturb_doubt import PerturbDoubt
 from skills.cable.perturb_endpoint import PerturbEndpoint
-from skills.cable.perturb_trace import PerturbTrace
 from skills.cable.pull_in import PullIn
 from skills.cable.state_claim import StateClaim
 from skills.cable.stir_cable import StirCable
@@ -38,6 +39,7 @@ from skills.motion.go_home import GoHome
 
 _SKILLS: dict[str, type[Skill]] = {
     "account_for_cable": AccountForCable,
+    "bring_knot": BringKnot,
     "classify_crossings": ClassifyCrossings,
     "detect_endpoints": DetectEndpoints,
     "dilate_knot": DilateKnot,
@@ -46,8 +48,8 @@ _SKILLS: dict[str, type[Skill]] = {
     "go_home": GoHome,
     "observe_workspace": ObserveWorkspace,
     "orient_trace": OrientTrace,
+    "perturb_doubt": PerturbDoubt,
     "perturb_endpoint": PerturbEndpoint,
-    "perturb_trace": PerturbTrace,
     "pull_in": PullIn,
     "state_claim": StateClaim,
     "stir_cable": StirCable,

@@ -14,6 +14,9 @@ from executive.core.world import Cell, StreamMessage
 from executive.engine.document import CellDocument
 from perception.cable.interfaces import CableVision
 
+# Arms in the ready pose reach this far into the overhead image.
+ROWS_OF_ARMS_AT_HOME = 58
+
 
 class _EquippedCell:
     """A world with the services that skills use on top of its devices."""
@@ -68,14 +71,18 @@ def _open_table_cell(
     world = TableCell(config, scenario, seed)
     services = {
         "arms": PlannedDualArm(world.driver, seed=seed),
-        "vision": cable_vision(),
+        "vision": cable_vision(hidden_rows=ROWS_OF_ARMS_AT_HOME),
         "rng": np.random.default_rng(seed),
     }
     return _EquippedCell(world, services)
 
 
-def cable_vision() -> CableVision:
-    """Return the perception that missions and `perceive` use."""
-    from perception.cable.vision import ClassicCableVision
+def cable_vision(hidden_rows: int = 0) -> CableVision:
+    """Return the perception that missions and `perceive` use.
 
-    return ClassicCableVision()
+    Args:
+        hidden_rows: Lowest image rows that show the robot instead of the table.
+    """
+    from perception.cable.vision import ClassicCableVision, ClassicVisionConfig
+
+    return ClassicCableVision(ClassicVisionConfig(hidden_rows=hidden_rows))

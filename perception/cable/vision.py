@@ -39,6 +39,8 @@ class ClassicVisionConfig:
         tracer: How cables are followed.
         classifier: How over and under are told apart.
         start_steps: Steps of the analytic tracer that make the start of a trace.
+        hidden_rows: Lowest rows that show the robot instead of the table; they are cut off, so
+            that cable which goes there leaves the view (thesis: 130).
         endpoints: The search for ends.
         grasps: The search for cage and pinch points.
     """
@@ -46,6 +48,7 @@ class ClassicVisionConfig:
     tracer: Literal["skeleton", "analytic"] = "skeleton"
     classifier: Literal["edges", "continuity"] = "edges"
     start_steps: int = 6
+    hidden_rows: int = 0
     endpoints: EndpointConfig = field(default_factory=EndpointConfig)
     grasps: GraspConfig = field(default_factory=GraspConfig)
 
@@ -62,21 +65,22 @@ class ClassicCableVision:
 
     def cable_pixels(self, image: GreyImage) -> NDArray[np.bool_]:
         """Say which pixels show cable or connector, shape (height, width)."""
-        observation = observe(image)
+        observation = observe(self._seen(image))
         if observation is None:
             return np.zeros(image.shape, dtype=bool)
-        return observation.mask.cable
+        hidden = [(0, self._config.hidden_rows), (0, 0)]
+        return np.pad(observation.mask.cable, hidden)
 
     def pieces(self, image: GreyImage) -> tuple[Points, ...]:
         """Return unbranched pieces of centre line, longest first, shape (N, 2) each."""
-        observation = observe(image)
+        observation = observe(self._seen(image))
         edges = observation.graph.edges if observation is not None else ()
         ordered = sorted(edges, key=lambda edge: -edge.length_px)
         return tuple(edge.points_px for edge in ordered)
 
     def endpoints(self, image: GreyImage) -> tuple[Endpoint, ...]:
         """Find the ends of cables, the surest first."""
-        observation = observe(image)
+        observation = observe(self._seen(image))
         if observation is None:
             return ()
         return find_endpoints(observation.mask, observation.graph, self._config.endpoints)
@@ -84,18 +88,18 @@ class ClassicCableVision:
     def start_points(self, image: GreyImage, endpoint: Endpoint) -> Points | None:
         """Follow the cable for about 96 px from an end; None when other strands are too near."""
         return self._starter.steps(
-            image, endpoint.position_px, endpoint.direction, self._config.start_steps
+            self._seen(image), endpoint.position_px, endpoint.direction, self._config.start_steps
         )
 
     def trace(
         self, image: GreyImage, start_px: Points, endpoints: Sequence[Endpoint]
     ) -> Trace | None:
         """Follow one cable; see `Tracer.trace`."""
-        return self._tracer.trace(image, start_px, endpoints)
+        return self._tracer.trace(self._seen(image), start_px, endpoints)
 
     def crossings(self, image: GreyImage, traces: Sequence[Trace]) -> tuple[Crossing, ...]:
         """Classify all crossings; see `CrossingClassifier.classify`."""
-        return self._classifier.classify(image, traces)
+        return self._classifier.classify(self._seen(image), traces)
 
     def knots(
         self, image: GreyImage, traces: Sequence[Trace], crossings: Sequence[Crossing]
@@ -122,6 +126,10 @@ class ClassicCableVision:
             knotted_probability=self.knotted_probability(traces, crossings),
             seconds=time.perf_counter() - began_s,
         )
+
+    def _seen(self, image: GreyImage) -> GreyImage:
+        """Return the rows that show the table."""
+        return image[: len(image) - self._config.hidden_rows]
 
     def _traces(
         self, image: GreyImage, start_px: Points | None, endpoints: Sequence[Endpoint]
