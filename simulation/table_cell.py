@@ -57,7 +57,7 @@ class TableCell:
         self.camera = OverheadCamera(
             self._world, settings.camera, np.random.default_rng(camera_seed)
         )
-        self.clock = SimClock(self._world.step_s, self._advance)
+        self.clock = SimClock(self)
         self.devices: Mapping[str, object] = {
             "clock": self.clock,
             "camera": self.camera,
@@ -68,6 +68,23 @@ class TableCell:
         self._scene = Stream("/scene", "Scene", rates.scene_hz)
         self._steps_a_record = max(1, rates.step_hz // rates.joint_states_hz)
         self._record()
+
+    @property
+    def step_s(self) -> float:
+        """Length of a step of the world [s]."""
+        return self._world.step_s
+
+    @property
+    def steps(self) -> int:
+        """Steps that the world has taken."""
+        return self._world.steps
+
+    def advance(self, steps: int) -> None:
+        """Let time pass and record it; what `clock.sleep_until` does."""
+        end = self.steps + steps
+        while self.steps < end:
+            self._world.advance(min(end - self.steps, self._steps_a_record))
+            self._record()
 
     def drain_streams(self) -> Iterable[StreamMessage]:
         """Return joint states and scenes since the last call, in the order of time."""
@@ -94,14 +111,7 @@ class TableCell:
 
     def _come_to_rest(self) -> None:
         while not self.driver.at_rest:
-            self.clock.sleep_until(self.clock.now_s() + self._world.step_s)
-
-    def _advance(self, steps: int) -> None:
-        while steps > 0:
-            some = min(steps, self._steps_a_record)
-            self._world.advance(some)
-            self._record()
-            steps -= some
+            self.advance(1)
 
     def _record(self) -> None:
         now_s, world = self._world.now_s(), self._world

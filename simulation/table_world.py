@@ -28,6 +28,7 @@ class TableWorld:
         driver: Their controllers.
         robot: What the arms look like.
         step_s: Length of a step.
+        steps: Steps taken since the world began.
     """
 
     def __init__(self, nodes_m: Floats, step_hz: int) -> None:
@@ -39,21 +40,21 @@ class TableWorld:
         self._obstacles = CableObstacles.of(self.robot)
         self._obstacles.follow(self.body, self.rod)
         self.driver = SimArmsDriver(self.body, self.rod, self.now_s, yumi_limits())
-        self._steps = self._still_steps = 0
+        self.steps = self._still_steps = 0
 
     def now_s(self) -> float:
         """Return the time since the world began [s]."""
-        return self._steps * self.step_s
+        return self.steps * self.step_s
 
     def advance(self, steps: int) -> None:
         """Let time pass, arms and cable in lockstep; resting arms cost nothing."""
-        done = 0
-        while done < steps and not self._arms_settled():
+        end = self.steps + steps
+        while self.steps < end and not self._arms_settled():
             self._step()
-            done += 1
-        if done < steps:
-            self.rod.advance((steps - done) * self.step_s)
-        self._steps += steps
+            self.steps += 1
+        if self.steps < end:
+            self.rod.advance((end - self.steps) * self.step_s)
+            self.steps = end
 
     def _arms_settled(self) -> bool:
         return self.driver.at_rest and self._still_steps >= _SETTLING_STEPS

@@ -19,17 +19,17 @@ SUPERSAMPLING = 2  # rays a pixel in x and in y
 LAMP_POSITION_M = (-0.35, -0.02, 1.15)
 _SHADOW_TEXEL_M = 0.0008  # on the table's surface
 _SHADOW_MARGIN_M = 0.06  # around the table
-_LAMP_GRAIN = 3  # see `raycast.cast`
+_LAMP_GRAIN = 2  # see `raycast.cast`
 _PENUMBRA_PX = 1.4  # the lamp is no point; its shadows have soft edges
 
 # Share by which a surface flickers under the projector's coherent light.
 _CLOTH_SPECKLE = 0.060
-_SPECKLE = {
-    Material.PAINT: 0.010,
-    Material.BRAID: 0.050,
-    Material.PLASTIC: 0.035,
-    Material.METAL: 0.020,
-}
+_FLOOR_SPECKLE = 0.010
+_SPECKLE = np.zeros(len(Material), np.float32)
+_SPECKLE[Material.PAINT] = 0.010
+_SPECKLE[Material.BRAID] = 0.050
+_SPECKLE[Material.PLASTIC] = 0.035
+_SPECKLE[Material.METAL] = 0.020
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -74,9 +74,9 @@ class Renderer:
         light = cv2.GaussianBlur(plane_light(self._plane, lamp.shadow), (0, 0), _PENUMBRA_PX)
         image = backdrop.brightness * (AMBIENT + (1.0 - AMBIENT) * light)
         depth_m = backdrop.depth_m.copy()
-        speckle = np.where(backdrop.on_table, np.float32(_CLOTH_SPECKLE), np.float32(0.01))
-        flicker = np.array([_SPECKLE[Material(kind)] for kind in Material], np.float32)
-        met = _merge(rays, flicker[primitives.material], backdrop.light, image, speckle, depth_m)
+        speckle = np.where(backdrop.on_table, _CLOTH_SPECKLE, _FLOOR_SPECKLE).astype(np.float32)
+        flicker = _SPECKLE[primitives.material]
+        met = _merge(rays, flicker, backdrop.light, image, speckle, depth_m)
         depth_m[~met & (light < 0.5)] = np.nan
         return Rendering(image, speckle, depth_m)
 

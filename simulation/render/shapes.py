@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from robots.descriptions.model import Box, Capsule, RobotDescription
+from robots.descriptions.model import Box, Capsule, RobotDescription, Vec3
 from simulation.render.primitives import Material, Primitives, boxes, capsules, join
 
 Floats = NDArray[np.float64]
@@ -16,7 +16,7 @@ _PIECES_A_SEGMENT = 4  # the centre line is smoothed, so that bends show no corn
 
 # Parts of the plugs in the plug's frame: low and high corner [mm], albedo, material. The body
 # of a plug spans x from -10 to 10 mm.
-_Part = tuple[tuple[float, float, float], tuple[float, float, float], float, Material]
+_Part = tuple[Vec3, Vec3, float, Material]
 _USB_A: tuple[_Part, ...] = (
     ((-10.0, -7.8, -4.0), (6.0, 7.8, 4.0), 0.80, Material.PLASTIC),
     ((6.0, -6.0, -2.2), (18.5, 6.0, 2.2), 0.26, Material.METAL),
@@ -27,9 +27,10 @@ _MICRO_USB: tuple[_Part, ...] = (
     ((-10.0, -4.8, -3.4), (10.0, 4.8, 3.4), 0.92, Material.PLASTIC),
     ((10.0, -3.4, -1.2), (15.5, 3.4, 1.2), 0.34, Material.METAL),
 )
-# Where the sleeve that relieves the strain begins, and how thick it is there and at the body.
+# The sleeve that relieves the strain: where it begins, and how thick it is at the body.
 _RELIEF_START_M = -0.020
 _RELIEF_STEPS = 6
+_USB_A_RELIEF_M, _MICRO_USB_RELIEF_M = 0.0065, 0.0045
 
 
 def robot_shapes(robot: RobotDescription, T_world_links: Mapping[str, Floats]) -> Primitives:
@@ -55,8 +56,8 @@ def cable_shapes(nodes_m: Floats, radius_m: float, T_world_plugs: Floats) -> Pri
     return join(
         [
             _sleeve(nodes_m, radius_m),
-            *_plug(usb_a, _USB_A, (radius_m, 0.0055)),
-            *_plug(micro_usb, _MICRO_USB, (radius_m, 0.0042)),
+            *_plug(usb_a, _USB_A, (radius_m, _USB_A_RELIEF_M)),
+            *_plug(micro_usb, _MICRO_USB, (radius_m, _MICRO_USB_RELIEF_M)),
         ]
     )
 
@@ -80,11 +81,7 @@ def _link_shape(shape: Box | Capsule, T_world_link: Floats, albedo: float) -> Pr
 
 
 def _box(
-    T_world_body: Floats,
-    low_m: tuple[float, float, float],
-    high_m: tuple[float, float, float],
-    albedo: float,
-    material: Material,
+    T_world_body: Floats, low_m: Vec3, high_m: Vec3, albedo: float, material: Material
 ) -> Primitives:
     low, high = np.array(low_m), np.array(high_m)
     T_world_box = T_world_body.copy()
@@ -113,6 +110,6 @@ def _plug(
     return [*body, capsules(line[:-1], line[1:], radii_m, 0.7, Material.PLASTIC)]
 
 
-def _metres(corner_mm: tuple[float, float, float]) -> tuple[float, float, float]:
+def _metres(corner_mm: Vec3) -> Vec3:
     x, y, z = corner_mm
     return 1e-3 * x, 1e-3 * y, 1e-3 * z
