@@ -45,8 +45,6 @@ class ConfigurationRules:
 SPRING_BACK_M = 0.012
 # How many plans are drawn before giving up: most get stuck, and cost a few hundredths of a second.
 PLANS = 500
-# A cable is at rest when no node is faster than this.
-REST_SPEED_M_S = 0.004
 
 
 def starting_configuration(
@@ -114,7 +112,7 @@ def settle(nodes_m: Floats, parameters: RodParameters, longest_s: float = 6.0) -
     rod = Rod(nodes_m, parameters)
     while rod.time_s < longest_s:
         rod.advance(0.25)
-        if np.linalg.norm(rod.velocities_m_s, axis=1).max() < REST_SPEED_M_S:
+        if rod.at_rest:
             break
     return rod.positions_m.copy()
 

@@ -146,6 +146,29 @@ def advance(
 
 
 @kernel
+def is_approached(chain: Chain, obstacles: Obstacles, constants: Constants) -> bool:
+    """Return whether a box around the way of any obstacle holds any of the cable."""
+    x = chain.positions
+    for m in range(len(obstacles.radii)):
+        reach = obstacles.radii[m] + constants.radius + SKIN_M
+        box = np.empty((2, 3))
+        for k in range(3):
+            first = min(obstacles.start[m, k], obstacles.start[m, k + 3])
+            second = min(obstacles.end[m, k], obstacles.end[m, k + 3])
+            box[0, k] = min(first, second) - reach
+            first = max(obstacles.start[m, k], obstacles.start[m, k + 3])
+            second = max(obstacles.end[m, k], obstacles.end[m, k + 3])
+            box[1, k] = max(first, second) + reach
+        for i in range(len(x)):
+            inside = True
+            for k in range(3):
+                inside = inside and box[0, k] < x[i, k] < box[1, k]
+            if inside:
+                return True
+    return False
+
+
+@kernel
 def _parts(peak: float) -> int:
     """Return into how many parts a step is split at that tension.
 
@@ -424,10 +447,10 @@ def _list_obstacle_pairs(
 
 @kernel
 def _is_held(rings: Rings, segment: int) -> bool:
+    held = False
     for r in range(len(rings.arc)):
-        if abs(segment + 0.5 - rings.arc[r]) < GRASP_NEIGHBOURS:
-            return True
-    return False
+        held = held or abs(segment + 0.5 - rings.arc[r]) < GRASP_NEIGHBOURS
+    return held
 
 
 @kernel

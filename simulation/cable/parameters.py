@@ -29,6 +29,8 @@ class RodParameters:
         floor_height_m: Height of the floor beside the table.
         gravity_m_s2: Acceleration of free fall, downwards.
         substep_s: Nominal length of one solver step.
+        rest_speed_m_s: A free cable that no node of has moved faster for a while is at rest,
+            and costs nothing until something comes near; 0 keeps it awake.
     """
 
     node_spacing_m: float = 0.01
@@ -52,3 +54,4 @@ class RodParameters:
     floor_height_m: float = -0.75
     gravity_m_s2: float = 9.81
     substep_s: float = 0.00025
+    rest_speed_m_s: float = 0.002

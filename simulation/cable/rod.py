@@ -15,6 +15,8 @@ Floats = NDArray[np.float64]
 
 # Room in the candidate lists: a bundle of twenty strands touching all along stays below it.
 PAIRS_PER_NODE = 40
+# How long a cable must have kept still to be at rest.
+REST_WINDOW_S = 0.1
 
 
 class Rod:
@@ -49,6 +51,8 @@ class Rod:
         self._next_capsules = self._capsules
         self._hands: dict[str, Hand] = {}
         self.time_s = 0.0
+        self._still_since_s, self._still_m = 0.0, nodes_m.copy()
+        self._at_rest = False
 
     @property
     def positions_m(self) -> Floats:
@@ -183,10 +187,30 @@ class Rod:
         """Return the force of a hand on the cable over the last advance, world, shape (3,)."""
         return sum((s.force_n for s in self._known(hand).strands), np.zeros(3))
 
+    @property
+    def at_rest(self) -> bool:
+        """Whether the cable lies still, so that time costs nothing until something comes near."""
+        return self._at_rest
+
     def advance(self, duration_s: float) -> None:
         """Let time pass; hands and capsules arrive where they were sent."""
-        steps = max(1, round(duration_s / self.parameters.substep_s))
         strands = [(hand, strand) for hand in self._hands.values() for strand in hand.strands]
+        if strands or kernels.is_approached(self._chain, self._next_capsules, self._constants):
+            self._at_rest = False
+        if not self._at_rest:
+            self._solve(strands, duration_s)
+        for hand in self._hands.values():
+            hand.arrive(duration_s, self._chain.positions, self.parameters.tear_m)
+        self._capsules = self._next_capsules
+        self._next_capsules = kernels.Obstacles(
+            self._capsules.end, self._capsules.end, self._capsules.radii
+        )
+        self.time_s += duration_s
+        if not self._at_rest:
+            self._watch_rest(bool(strands))
+
+    def _solve(self, strands: list[tuple[Hand, Strand]], duration_s: float) -> None:
+        steps = max(1, round(duration_s / self.parameters.substep_s))
         rings = _rings(strands, duration_s, self.parameters)
         kernels.advance(
             self._chain,
@@ -199,13 +223,18 @@ class Rod:
         )
         for (_, strand), arc, force in zip(strands, rings.arc, rings.force, strict=True):
             strand.arc, strand.force_n = float(arc), force
-        for hand in self._hands.values():
-            hand.arrive(duration_s, self._chain.positions, self.parameters.tear_m)
-        self._capsules = self._next_capsules
-        self._next_capsules = kernels.Obstacles(
-            self._capsules.end, self._capsules.end, self._capsules.radii
-        )
-        self.time_s += duration_s
+
+    def _watch_rest(self, held: bool) -> None:
+        """Notice that a free cable has kept still for a while."""
+        waited_s = self.time_s - self._still_since_s
+        if not held and waited_s < REST_WINDOW_S:
+            return
+        moved_m = np.linalg.norm(self._chain.positions - self._still_m, axis=1).max()
+        self._at_rest = not held and bool(moved_m < self.parameters.rest_speed_m_s * waited_s)
+        if self._at_rest:
+            self._chain.velocities.fill(0.0)
+            self._chain.tensions.fill(0.0)
+        self._still_since_s, self._still_m = self.time_s, self._chain.positions.copy()
 
     def _known(self, hand: str) -> Hand:
         if hand not in self._hands:
