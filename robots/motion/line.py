@@ -1,8 +1,9 @@
 """Straight tool motions of one or both arms, in step, with the orientation of the tools kept.
 
-An arm of seven joints can follow a line in many ways, since its elbow is free to swing. A line
-is followed with the elbow as it comes, pushed away from joint limits; where that ends at a
-limit or in a collision, variants with a steady swing to either side are tried.
+An arm of seven joints can follow a line in many ways, since its elbow is free to swing. The
+elbow goes as it comes, pushed away from joint limits and singularities; where that ends at a
+limit or in a collision, variants with a steady swing to either side are tried. Swings are
+spread over the whole line, since sudden ones would have to be driven slowly.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -95,7 +96,7 @@ def _swing_along(
 def _smoothed(arm: ArmKinematics, samples: Floats, poses: Sequence[pin.SE3]) -> Floats | None:
     """Spread sudden swings over the line: blur the joint positions, then restore the poses.
 
-    Odd reflection at both ends leaves the first sample where it is.
+    Odd reflection at both ends keeps the first sample where it is.
     """
     width = min(_BLUR_SAMPLES, len(samples) / 4)
     reach = min(ceil(3 * width), len(samples) - 1)
@@ -105,9 +106,13 @@ def _smoothed(arm: ArmKinematics, samples: Floats, poses: Sequence[pin.SE3]) -> 
     padded = np.concatenate([before, samples, after])
     windows = np.lib.stride_tricks.sliding_window_view(padded, 2 * reach + 1, axis=0)
     blurred = np.clip(windows @ (weights / weights.sum()), arm.lower, arm.upper)
-    restored = [solve_pose(arm, pose, q) for pose, q in zip(poses, blurred, strict=True)]
-    whole = [q for q in restored if q is not None]
-    return np.array(whole) if len(whole) == len(restored) else None
+    smooth = [samples[0]]
+    for pose, q in zip(poses[1:], blurred[1:], strict=True):
+        restored = solve_pose(arm, pose, q)
+        if restored is None:
+            return None
+        smooth.append(restored)
+    return np.array(smooth)
 
 
 def line_variants(
@@ -155,7 +160,7 @@ def comfort(arm: ArmKinematics, q: Floats) -> float:
     return min(1.0, max(0.0, room) / _LIMIT_ZONE_RAD, arm.dexterity(q) / SINGULAR_ZONE)
 
 
-def together(robot: RobotModel, start_rad: Floats, lines: Mapping[Arm, ArmLine]) -> Floats:
+def in_step(robot: RobotModel, start_rad: Floats, lines: Mapping[Arm, ArmLine]) -> Floats:
     """Return configurations of all arms while some follow complete lines, shape (k, n)."""
     count = len(next(iter(lines.values())).samples_rad)
     samples: Floats = np.tile(start_rad, (count, 1))

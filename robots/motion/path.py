@@ -15,7 +15,7 @@ from robots.interfaces import Floats
 RESOLUTION_M = 0.02
 _EXTENSION = 0.25  # of a tree, in the metric of the space
 _SHORTEN_TRIES = 60
-_SAMPLING_MARGIN_RAD = 1.5  # beyond the box around start and goal
+_SAMPLING_MARGIN_RAD = 3.0  # beyond the box around start and goal
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from robots.interfaces import Arm, Floats, MotionFailure, TcpGoal, Trajectory
-from robots.motion.line import ArmLine, line_steps, line_variants, together
+from robots.motion.line import ArmLine, in_step, line_steps, line_variants
 from robots.motion.line_timing import time_curve
 from robots.motion.model import RobotModel
 from robots.motion.path import PathSearch, Space
@@ -33,7 +33,7 @@ class PlannerSettings:
     """
 
     goal_solutions: int = 6
-    path_checks: int = 12_000
+    path_checks: int = 20_000
     path_goals: int = 3
     corner_tries: int = 40
     speed_scale: float = 1.0
@@ -78,7 +78,7 @@ class MotionPlanner:
     def to_goals(
         self, start_rad: Floats, goals: Mapping[Arm, TcpGoal]
     ) -> Trajectory | MotionFailure:
-        """Plan to goals of some arms; the others stay where they are."""
+        """Plan to goals of some arms, at least one; the others stay where they are."""
         found = self.solver.configurations(goals, start_rad, self.settings.goal_solutions)
         if isinstance(found, MotionFailure):
             return found
@@ -95,7 +95,7 @@ class MotionPlanner:
     def along_lines(
         self, start_rad: Floats, displacements_m: Mapping[Arm, Floats]
     ) -> Trajectory | MotionFailure:
-        """Plan straight tool motions in step, orientation kept."""
+        """Plan straight tool motions of at least one arm, in step, orientation kept."""
         failures = []
         for lines in line_variants(self.robot, start_rad, displacements_m):
             answer = self._line(start_rad, displacements_m, lines)
@@ -113,7 +113,7 @@ class MotionPlanner:
         for arm, line in lines.items():
             if not line.complete:
                 return _cut_short(arm, displacements_m, line)
-        samples = together(self.robot, start, lines)
+        samples = in_step(self.robot, start, lines)
         hit = next((q for q in samples if self.solver.together.collides(q)), None)
         if hit is not None:
             pair = self.solver.together.colliding_pair(hit)

@@ -8,7 +8,7 @@ import numpy as np
 from robots.interfaces import Arm, Floats, MotionFailure, TcpGoal
 from robots.motion.collision import CollisionModel
 from robots.motion.ik import random_bank
-from robots.motion.line import follow_line, line_steps, together
+from robots.motion.line import follow_line, in_step, line_steps
 from robots.motion.model import RobotModel
 from robots.motion.search import GoalSearch, Solution, place
 from robots.placement import PlanningScene
@@ -117,7 +117,7 @@ class GoalSolver:
                 lines[arm] = follow_line(self.robot.kinematics[arm], start, displacement, count)
                 if not lines[arm].complete:
                     return False
-            samples = together(self.robot, q, lines)
+            samples = in_step(self.robot, q, lines)
             if any(self.together.collides(sample) for sample in samples):
                 return False
             q = samples[-1]

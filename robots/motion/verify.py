@@ -11,6 +11,7 @@ from robots.motion.collision import CollisionModel
 
 CONTROL_PERIOD_S = 0.004
 _TOLERANCE = 1e-3  # relative, on velocity and acceleration
+_POSITION_SLACK_RAD = 1e-4  # a measured start may be that far beyond a limit
 
 
 def sample(
@@ -29,7 +30,7 @@ def find_fault(
 ) -> MotionFailure | None:
     """Return what is wrong with a trajectory, or None when it may run."""
     times, position, velocity, acceleration = sample(trajectory)
-    if not limits.contain(position, slack_rad=1e-6):
+    if not limits.contain(position, slack_rad=_POSITION_SLACK_RAD):
         return _timing("leaves the joint limits")
     if np.any(np.abs(velocity) > limits.velocity * (1 + _TOLERANCE)):
         return _timing("exceeds the velocity limits")
