@@ -37,6 +37,7 @@ class SampleConfig:
     Attributes:
         from_scene: Samples a scene.
         interesting: Share of samples placed where other strands are near.
+        ends: Share of samples within three steps of an end of a cable.
         scale_error: Standard deviation of the logarithm of the cable's assumed width.
         jitter: Largest standard deviation of points of the path [cable widths].
         short: Share of samples with a path of one to three points.
@@ -44,6 +45,7 @@ class SampleConfig:
 
     from_scene: int = 24
     interesting: float = 0.65
+    ends: float = 0.08
     scale_error: float = 0.12
     jitter: float = 0.22
     short: float = 0.12
@@ -69,11 +71,7 @@ def scene_samples(rng: np.random.Generator, scene: Scene, config: SampleConfig) 
     crops, targets = [], []
     for _ in range(config.from_scene):
         which = int(rng.integers(len(lines)))
-        line, places = lines[which], near[which]
-        if len(places) and rng.random() < config.interesting:
-            at = rng.choice(places) + rng.uniform(-18.0, 18.0)
-        else:
-            at = rng.uniform(0.0, len(line) - 1)
+        line, at = lines[which], _place(rng, len(lines[which]), near[which], config)
         if rng.random() < 0.5:
             line, at = line[::-1], len(line) - 1 - at
         drawn = _draw_sample(rng, scaled, line, at, config)
@@ -98,6 +96,15 @@ def _near_crossings(lines: list[Floats]) -> list[Floats]:
         places[(places >= starts[k]) & (places < starts[k + 1])] - starts[k]
         for k in range(len(lines))
     ]
+
+
+def _place(rng: np.random.Generator, nodes: int, near: Floats, config: SampleConfig) -> float:
+    """Return the node number, with fraction, that a sample is about."""
+    if rng.random() < config.ends:
+        return float(nodes - 1 - rng.uniform(0.0, 12.0))
+    if len(near) and rng.random() < config.interesting:
+        return float(rng.choice(near) + rng.uniform(-18.0, 18.0))
+    return float(rng.uniform(0.0, nodes - 1))
 
 
 def _draw_sample(

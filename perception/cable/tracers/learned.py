@@ -13,7 +13,7 @@ import numpy as np
 
 from perception.cable.tracers.centre_line import arc_lengths, point_at
 from perception.cable.tracers.modes import find_modes
-from perception.cable.tracers.paths import Path, checked
+from perception.cable.tracers.paths import Ends, Path, checked
 from perception.cable.tracers.rivals import RivalConfig, reduced
 from perception.cable.tracers.steps import StepModel, TracingView, make_view
 from perception.cable.types import Endpoint, Points, Trace, TraceEnd
@@ -67,10 +67,17 @@ class LearnedTracer:
         if mask is None:
             return None
         view = make_view(image, mask)
-        ends = np.array([end.position_px for end in endpoints]).reshape(-1, 2)
-        far = np.linalg.norm(ends - start_px[0], axis=1) > 3.0 * mask.width_px
+        far = [
+            end
+            for end in endpoints
+            if np.linalg.norm(end.position_px - start_px[0]) > 3.0 * mask.width_px
+        ]
+        ends = Ends(
+            view.image.into(np.array([end.position_px for end in far]).reshape(-1, 2)),
+            np.array([end.direction for end in far]).reshape(-1, 2),
+        )
         starts = self._starts(view.image.into(start_px), endpoints, view.image)
-        best = self._search(view, starts, view.image.into(ends[far]))[0]
+        best = self._search(view, starts, ends)[0]
         return Trace(
             points_px=view.image.back(best.points),
             end=best.end or TraceEnd.LOST,
@@ -92,7 +99,7 @@ class LearnedTracer:
         ways = known[:1] or list(np.column_stack([np.cos(turns), np.sin(turns)]))
         return [_fresh(np.vstack([points[0] - STEP * way, points[0]])) for way in ways]
 
-    def _search(self, view: TracingView, starts: list[Path], ends: Points) -> list[Path]:
+    def _search(self, view: TracingView, starts: list[Path], ends: Ends) -> list[Path]:
         """Return ended paths, likeliest first."""
         alive, done = starts, list[Path]()
         for _ in range(self._config.most_steps):
@@ -113,13 +120,16 @@ class LearnedTracer:
         ahead = []
         for path, outlook in zip(paths, self._model.outlooks(view, paths), strict=True):
             modes = find_modes(outlook.cells, config.least, config.modes)
+            believed = [outlook.end, *(mode.probability for mode in modes)]
+            # What lies beside the modes is the blur of the map, unless that is most of it.
+            total = max(sum(believed), 0.5)
             ahead += [
-                path.extended(outlook.frame.back(mode.point_crop), mode.probability)
+                path.extended(outlook.frame.back(mode.point_crop), mode.probability / total)
                 for mode in modes
             ]
             if outlook.end > config.least:
-                ahead.append(path.ended(TraceEnd.ENDPOINT, outlook.end))
-            if max([outlook.end, *(mode.probability for mode in modes)]) < config.lost:
+                ahead.append(path.ended(TraceEnd.ENDPOINT, outlook.end / total))
+            if max(believed) < config.lost:
                 ahead.append(path.ended(TraceEnd.LOST, config.lost))
         return ahead
 

@@ -16,7 +16,10 @@ REPEATED = 8
 REPEAT_DISTANCE = 0.75 * WIDTH
 # Cable does not lie on itself for so long; such a path went wrong somewhere.
 REPEAT_PROBABILITY = 0.02
-ENDPOINT_DISTANCE = 2.2 * WIDTH
+# A path ends at an end that lies so far ahead and aside, and that faces it.
+ENDPOINT_AHEAD = 2.2 * WIDTH
+ENDPOINT_ASIDE = 0.9 * WIDTH
+ENDPOINT_FACING = 0.5
 EDGE_MARGIN = 0.5 * WIDTH
 
 
@@ -61,6 +64,12 @@ class Path:
         """Return the path without its last points."""
         return replace(self, points=self.points[:-points], logs=self.logs[:-points])
 
+    def lifted(self, first: int, by: float) -> "Path":
+        """Return the path with other logarithms from a point on."""
+        logs = self.logs.copy()
+        logs[first:] += by
+        return replace(self, logs=logs)
+
     def joined(self, other: "Path", place: int) -> "Path":
         """Return this path continued by what comes after point `place` of another one."""
         ahead = other.logs[place + 1 :] - other.logs[place]
@@ -71,7 +80,31 @@ class Path:
         )
 
 
-def checked(path: Path, image: ScaledImage, ends: Floats) -> Path:
+@dataclass(frozen=True, slots=True, eq=False)
+class Ends:
+    """Ends of cables where a path may finish, in the scaled image.
+
+    Attributes:
+        points: Where, shape (K, 2).
+        directions: Unit vectors into the cable, shape (K, 2).
+    """
+
+    points: Floats
+    directions: Floats
+
+    def reached(self, path: Path) -> Floats | None:
+        """Return the end that a path has come to, None if it has come to none."""
+        heading = path.heading
+        offsets = self.points - path.points[-1]
+        ahead = offsets @ heading
+        aside = np.abs(offsets @ np.array([-heading[1], heading[0]]))
+        near = (np.abs(ahead) < ENDPOINT_AHEAD) & (aside < ENDPOINT_ASIDE)
+        facing = self.directions @ heading < -ENDPOINT_FACING
+        found = np.flatnonzero(near & facing)
+        return self.points[found[aside[found].argmin()]] if len(found) else None
+
+
+def checked(path: Path, image: ScaledImage, ends: Ends) -> Path:
     """Return the path, ended where it reaches an end of a cable, the border or itself."""
     if path.end is not None:
         return path
@@ -80,11 +113,9 @@ def checked(path: Path, image: ScaledImage, ends: Floats) -> Path:
     size = np.array([columns, rows])
     if (here < EDGE_MARGIN).any() or (here > size - 1 - EDGE_MARGIN).any():
         return path.ended(TraceEnd.EDGE)
-    if len(ends):
-        gaps = np.linalg.norm(ends - here, axis=1)
-        nearest = int(gaps.argmin())
-        if gaps[nearest] < ENDPOINT_DISTANCE:
-            return path.extended(ends[nearest], 1.0).ended(TraceEnd.ENDPOINT)
+    end = ends.reached(path)
+    if end is not None:
+        return path.extended(end, 1.0).ended(TraceEnd.ENDPOINT)
     if repeats(path.points):
         return path.shortened(REPEATED).ended(TraceEnd.RETRACE, REPEAT_PROBABILITY)
     return path

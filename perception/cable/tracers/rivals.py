@@ -54,7 +54,14 @@ def _one_of(path: Path, other: Path, config: RivalConfig) -> Path | None:
     place = meeting(path, other)
     if place is None:
         return None
-    return path.joined(other, place) if _advantage(path, other, place, config) > 0.0 else other
+    advantage = _advantage(path, other, place, config)
+    # Both ways together are as likely as before; the advantage says how they share that.
+    both = float(np.logaddexp(path.logs[-1], other.logs[place]))
+    share = both - float(np.log1p(np.exp(-abs(advantage))))
+    if advantage > 0.0:
+        last = len(path.points) - 1
+        return path.joined(other, place).lifted(last, share - float(path.logs[-1]))
+    return other.lifted(place, share - float(other.logs[place]))
 
 
 def meeting(path: Path, other: Path) -> int | None:

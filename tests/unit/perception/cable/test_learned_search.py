@@ -2,12 +2,13 @@ import numpy as np
 import pytest
 
 from perception.cable.tracers.modes import find_modes
-from perception.cable.tracers.paths import Path, checked, distances, repeats
+from perception.cable.tracers.paths import Ends, Path, checked, distances, repeats
 from perception.cable.tracers.rivals import RivalConfig, meeting, reduced
 from perception.cable.types import TraceEnd
 from perception.models.frames import ScaledImage, turned_frame
 from perception.models.tracer_crop import HERE, STEP, WIDTH
 
+NO_ENDS = Ends(np.zeros((0, 2)), np.zeros((0, 2)))
 IMAGE = ScaledImage(np.zeros((400, 400), np.uint8), 1.0, 0.0)
 
 
@@ -51,11 +52,14 @@ def test_distances_to_a_polyline():
 
 def test_a_path_ends_at_the_border_and_at_known_ends():
     out = _path(_line((353.0, 200.0), (STEP, 0.0), 6))
-    assert checked(out, IMAGE, np.zeros((0, 2))).end is TraceEnd.EDGE
+    assert checked(out, IMAGE, NO_ENDS).end is TraceEnd.EDGE
     inside = _path(_line((100.0, 200.0), (STEP, 0.0), 6))
-    assert checked(inside, IMAGE, np.zeros((0, 2))).end is None
-    end = inside.points[-1] + WIDTH
-    ended = checked(inside, IMAGE, end[None])
+    assert checked(inside, IMAGE, NO_ENDS).end is None
+    end = inside.points[-1] + (WIDTH, 0.5 * WIDTH)
+    facing, passing = (Ends(end[None], np.array([way])) for way in ((-1.0, 0.0), (0.0, 1.0)))
+    # The end of a cable that lies across is none of this one's.
+    assert checked(inside, IMAGE, passing).end is None
+    ended = checked(inside, IMAGE, facing)
     assert ended.end is TraceEnd.ENDPOINT
     assert ended.points[-1] == pytest.approx(end)
 
@@ -79,7 +83,8 @@ def test_of_two_ways_that_meet_the_likelier_stays():
     )
     assert meeting(unlikely, likely) == 10
     (kept,) = reduced([unlikely, likely], RivalConfig(gain=0.0))
-    assert kept is likely
+    assert np.array_equal(kept.points, likely.points)
+    assert kept.logs == pytest.approx(likely.logs)
 
 
 def test_a_loop_that_only_one_way_explains_counts_for_it():
@@ -93,4 +98,6 @@ def test_a_loop_that_only_one_way_explains_counts_for_it():
     assert len(kept.points) == 13
     (kept,) = reduced([short, long], RivalConfig(gain=0.5, most=4.0))
     assert len(kept.points) == len(round_) + 4
-    assert kept.log_probability == pytest.approx(-0.15 * (len(round_) - 1) - 0.05 * 4)
+    # The loser's share goes to the winner; both ways together stay as likely as they were.
+    both = np.logaddexp(long.logs[-1], short.logs[8])
+    assert long.logs[-1] < kept.logs[len(round_) - 1] < both
