@@ -24,7 +24,7 @@ class Mode:
 
 
 def find_modes(
-    cells: NDArray[np.float32], least: float, most: int, reach: int = 2
+    cells: Floats, least: float, most: int, reach: int = 2
 ) -> tuple[Mode, ...]:
     """Return the modes of a heat map, most likely first.
 
@@ -34,7 +34,7 @@ def find_modes(
         most: Return at most so many.
         reach: A mode takes the cells up to this far from its peak.
     """
-    left = np.pad(cells.astype(np.float64), reach)
+    left = np.pad(cells, reach)
     around = np.arange(-reach, reach + 1)
     modes = []
     for _ in range(most):

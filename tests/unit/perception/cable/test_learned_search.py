@@ -22,7 +22,7 @@ def _line(start, step, count):
 
 
 def test_modes_share_the_belief():
-    cells = np.zeros((32, 32), np.float32)
+    cells = np.zeros((32, 32))
     cells[10, 12], cells[10, 13], cells[20, 5] = 0.4, 0.2, 0.3
     first, second = find_modes(cells, least=0.05, most=4)
     assert (first.probability, second.probability) == pytest.approx((0.6, 0.3))
@@ -31,7 +31,7 @@ def test_modes_share_the_belief():
 
 
 def test_modes_at_the_border_of_the_map():
-    cells = np.zeros((32, 32), np.float32)
+    cells = np.zeros((32, 32))
     cells[0, 31] = 1.0
     (mode,) = find_modes(cells, least=0.05, most=4)
     assert mode.point_crop == pytest.approx([62.5, 0.5])

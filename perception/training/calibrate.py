@@ -1,0 +1,107 @@
+"""Calibrate a trained version on fresh scenes: `python -m perception.training.calibrate FOLDER`.
+
+Scenes of one seed fit the temperature, scenes of another one are measured on; training saw
+neither.
+"""
+
+import argparse
+import json
+from pathlib import Path
+
+import numpy as np
+import torch
+from torch import Tensor, nn
+
+from perception.cable.tracers.modes import find_modes
+from perception.models.frames import Floats
+from perception.models.store import load_network, read_config
+from perception.models.tracer_math import step_logits
+from perception.training.calibration import (
+    expected_calibration_error,
+    fit_temperature,
+    selective_error,
+)
+from perception.training.crossing import CrossingTask
+from perception.training.tracer import HIT_CROP_PX, TracerTask
+from perception.training.tracer_samples import NOWHERE
+
+FIT_SEED, MEASURE_SEED = 910_001, 920_001
+BATCH = 128
+
+
+@torch.inference_mode()
+def calibrate_crossing(network: nn.Module, batches: int) -> tuple[float, dict[str, float]]:
+    """Return temperature and figures of a crossing network."""
+    temperature = fit_temperature(_crossing_logits(network, FIT_SEED, batches))
+    logits = _crossing_logits(network, MEASURE_SEED, batches) / temperature
+    belief = torch.sigmoid(logits).double().numpy()
+    confidence, right = np.maximum(belief, 1.0 - belief), (belief > 0.5).astype(float)
+    return temperature, _figures(confidence, right)
+
+
+def _crossing_logits(network: nn.Module, seed: int, batches: int) -> Tensor:
+    stream = CrossingTask().batches(seed, 0, 1, BATCH)
+    return torch.cat([network(next(stream)[0]).float() for _ in range(batches)])
+
+
+@torch.inference_mode()
+def calibrate_tracer(network: nn.Module, batches: int) -> tuple[float, dict[str, float]]:
+    """Return temperature (always 1) and figures of single steps of a tracer network."""
+    stream = TracerTask().batches(MEASURE_SEED, 0, 1, BATCH)
+    confidence, right = [], []
+    for _ in range(batches):
+        crops, targets = next(stream)
+        heat, stop = network(crops)
+        beliefs = torch.softmax(step_logits(heat, stop), 1).double().numpy()
+        for belief, target in zip(beliefs, targets[:, 0].numpy(), strict=True):
+            answer = _answer(belief)
+            confidence.append(answer[0])
+            gone = target[0] <= NOWHERE
+            near = answer[1] is not None and np.linalg.norm(answer[1] - target) < HIT_CROP_PX
+            right.append(float(answer[1] is None if gone else near))
+    return 1.0, _figures(np.array(confidence), np.array(right))
+
+
+def _answer(belief: Floats) -> tuple[float, Floats | None]:
+    """Return the best answer's belief and place; no place for "it ends"."""
+    grid = int(np.sqrt(len(belief)))
+    modes = find_modes(belief[:-1].reshape(grid, grid), least=0.03, most=3)
+    end = float(belief[-1])
+    total = end + sum(mode.probability for mode in modes)
+    if not modes or end > modes[0].probability:
+        return end / max(total, 1e-9), None
+    return modes[0].probability / total, modes[0].point_crop
+
+
+def _figures(
+    confidence: Floats,
+    right: Floats,
+) -> dict[str, float]:
+    return {
+        "n": len(right),
+        "right": float(right.mean()),
+        "calibration_error": expected_calibration_error(confidence, right),
+        "error_of_surest_80": selective_error(confidence, right),
+    }
+
+
+def main() -> None:
+    """Fit the temperature, and write it and the figures."""
+    parser = argparse.ArgumentParser(prog="python -m perception.training.calibrate")
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("--batches", type=int, default=40)
+    options = parser.parse_args()
+    folder: Path = options.folder
+    config = read_config(folder)
+    ways = {"crossing": calibrate_crossing, "tracer": calibrate_tracer}
+    temperature, figures = ways[config.network](load_network(folder), options.batches)
+    changed = config.model_copy(update={"temperature": temperature})
+    (folder / "config.json").write_text(changed.model_dump_json(indent=2) + "\n")
+    path = folder / "metrics.json"
+    metrics = json.loads(path.read_text())
+    metrics["calibration"] = {"fit_seed": FIT_SEED, "measure_seed": MEASURE_SEED, **figures}
+    path.write_text(json.dumps(metrics, indent=2) + "\n")
+
+
+if __name__ == "__main__":
+    main()
