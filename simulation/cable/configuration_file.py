@@ -86,15 +86,19 @@ def _check_points(path: Path, points_m: Floats, parameters: RodParameters) -> No
             index = int(np.argmax(wrong))
             got = ", ".join(f"{value:g}" for value in points_m[index])
             raise InputError(f"{path}: nodes_m[{index}]: {what}; got ({got}); expected {expected}")
+    _check_length(path, points_m)
 
 
-def _check_line(path: Path, nodes_m: Floats, parameters: RodParameters) -> None:
-    length_m = float(np.linalg.norm(np.diff(nodes_m, axis=0), axis=1).sum())
+def _check_length(path: Path, points_m: Floats) -> None:
+    length_m = float(np.linalg.norm(np.diff(points_m, axis=0), axis=1).sum())
     if not SHORTEST_M <= length_m <= LONGEST_M:
         raise InputError(
             f"{path}: nodes_m: wrong length; got {length_m:.2f} m; expected {SHORTEST_M:g} to "
             f"{LONGEST_M:g} m"
         )
+
+
+def _check_line(path: Path, nodes_m: Floats, parameters: RodParameters) -> None:
     index = np.arange(len(nodes_m), dtype=float)
     limit_m = TOUCH_SHARE * 2.0 * parameters.radius_m
     for crossing in centre_line_crossings(nodes_m):

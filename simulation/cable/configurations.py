@@ -6,8 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from executive.core.errors import InputError
-from perception.cable.topology import Knottedness, StrandCrossing, classify_curve
-from simulation.cable.knots import KNOT_NAMES, TEMPLATES, KnotName
+from perception.cable.topology import Knottedness, classify_curve
+from simulation.cable.heights import lift_over
+from simulation.cable.knots import KNOT_NAMES, TEMPLATES, KnotName, KnotTemplate
 from simulation.cable.layout import Area, LayoutRules, grow_end
 from simulation.cable.parameters import RodParameters
 from simulation.cable.rod import Rod
@@ -43,6 +44,8 @@ class ConfigurationRules:
 
 # Springing back, a cable moves by about this much until it rests.
 SPRING_BACK_M = 0.012
+# An upper strand starts this many radii higher than the lower one: just clear of it.
+LIFT_RADII = 2.2
 # How many plans are drawn before giving up: most get stuck, and cost a few hundredths of a second.
 PLANS = 500
 
@@ -92,7 +95,7 @@ def draw_plan(
     if core is None:
         return None
     template = TEMPLATES.get(knot)
-    spare = rules.most_crossings - (len(template.over) // 2 if template else 0)
+    spare = rules.most_crossings - (template.crossings if template else 0)
     free_m = rules.length_m - (len(core) - 1) * layout.spacing_m
     longest = 1.0 - rules.shortest_end_m / free_m
     share = float(np.clip(rng.uniform(*rules.place), 1.0 - longest, longest))
@@ -104,7 +107,7 @@ def draw_plan(
         return None
     curve = curve[::-1]
     start = len(curve) - round(free_m * share / layout.spacing_m) - len(core)
-    return _raise_over(curve, (start, start + len(core) - 1), template is not None, rng, parameters)
+    return _raise_over(curve, (start, start + len(core) - 1), template, rng, parameters)
 
 
 def settle(nodes_m: Floats, parameters: RodParameters, longest_s: float = 6.0) -> Floats:
@@ -147,45 +150,25 @@ def _place_core(
 def _raise_over(
     curve: Floats,
     knot: tuple[int, int],
-    tied: bool,
+    template: KnotTemplate | None,
     rng: np.random.Generator,
     parameters: RodParameters,
 ) -> Floats:
-    """Lift the upper strand of every crossing over the lower one, shape (N, 3)."""
+    """Lift the upper strand of every crossing over the lower one, shape (N, 3).
+
+    Crossings between the nodes `knot` follow the template, or its mirror image; who is on top
+    at the others is drawn.
+    """
     flat = np.column_stack([curve, np.full(len(curve), parameters.radius_m)])
     crossings = centre_line_crossings(flat)
-    starts_over = bool(rng.integers(2))
-    visits: list[tuple[float, bool]] = []
-    for crossing in crossings:
-        first_over = bool(rng.integers(2))
-        if tied and knot[0] <= crossing.first and crossing.second <= knot[1]:
-            first_over = _template_says(crossing, crossings, knot) == starts_over
-        visits += [(crossing.first, first_over), (crossing.second, not first_over)]
-    flat[:, 2] += _bumps(len(curve), visits, 2.2 * parameters.radius_m)
-    return flat
-
-
-def _template_says(
-    crossing: StrandCrossing, crossings: tuple[StrandCrossing, ...], knot: tuple[int, int]
-) -> bool:
-    """Return whether the earlier visit is an even one: the templates are alternating."""
     inside = [c for c in crossings if knot[0] <= c.first and c.second <= knot[1]]
-    visits = sorted(visit for c in inside for visit in (c.first, c.second))
-    return visits.index(crossing.first) % 2 == 0
-
-
-def _bumps(nodes: int, visits: list[tuple[float, bool]], height_m: float) -> Floats:
-    """Return how high each node is lifted, shape (N,): smooth bumps that spare lower visits."""
-    index = np.arange(nodes, dtype=float)
-    lifted = np.zeros(nodes)
-    under = np.array([arc for arc, over in visits if not over])
-    for arc, over in visits:
-        if over:
-            width = min(3.5, 0.6 * float(np.abs(under - arc).min()))
-            inside = np.abs(index - arc) < width
-            bump = height_m * np.cos(0.5 * np.pi * (index - arc) / width) ** 2
-            lifted = np.where(inside, np.maximum(lifted, bump), lifted)
-    return lifted
+    mirrored = bool(rng.integers(2))
+    drawn = {crossing: bool(rng.integers(2)) for crossing in crossings}
+    if template is not None:
+        for crossing, on_top in zip(inside, template.first_over(inside), strict=True):
+            drawn[crossing] = on_top != mirrored
+    first_over = [drawn[crossing] for crossing in crossings]
+    return lift_over(flat, crossings, first_over, LIFT_RADII * parameters.radius_m)
 
 
 def _is_tied(nodes_m: Floats, knot: KnotName) -> bool:
@@ -196,7 +179,7 @@ def _is_tied(nodes_m: Floats, knot: KnotName) -> bool:
     verdict = classify_curve(nodes_m)
     if knot not in TEMPLATES:
         return verdict.state is Knottedness.UNKNOT
-    wanted = len(TEMPLATES[knot].over) // 2
+    wanted = TEMPLATES[knot].crossings
     return verdict.state is Knottedness.KNOTTED and verdict.reduced_crossings == wanted
 
 

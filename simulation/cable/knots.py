@@ -1,12 +1,14 @@
 """Knots as plane curves with over and under: the templates that configurations are laid from."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
+
+from perception.cable.topology import StrandCrossing
 
 Floats = NDArray[np.float64]
 KnotName = Literal["none", "overhand", "figure_8"]
@@ -26,6 +28,16 @@ class KnotTemplate:
     corners: tuple[tuple[float, float], ...]
     over: tuple[bool, ...]
     diameter: float
+
+    @property
+    def crossings(self) -> int:
+        """How often it crosses itself."""
+        return len(self.over) // 2
+
+    def first_over(self, crossings: Sequence[StrandCrossing]) -> tuple[bool, ...]:
+        """Return for each crossing of a curve laid after the template who is on top."""
+        arcs = sorted(arc for c in crossings for arc in (c.first, c.second))
+        return tuple(self.over[arcs.index(crossing.first)] for crossing in crossings)
 
     def curve_m(self, diameter_m: float, spacing_m: float) -> Floats:
         """Return the curve at a size, evenly spaced, shape (N, 2)."""
