@@ -7,6 +7,7 @@ import numpy as np
 from perception.cable.types import Points
 from perception.camera import CameraFrame
 from robots.interfaces import ARMS, Arm, DualArm, TcpGoal
+from skills.motion.steps import above
 
 # Finger tips end 6 mm beyond the tool centre point: they stay 2 mm above the cloth and reach
 # past the axis of a cable of 6.6 mm diameter.
@@ -46,9 +47,10 @@ def nearest_arms(position_m: Points) -> tuple[Arm, Arm]:
 
 
 def first_reachable(arms: DualArm, goals: Iterable[TcpGoal]) -> tuple[Arm, TcpGoal] | None:
-    """Return the first goal that an arm can reach, with that arm."""
+    """Return the first goal that an arm can reach from above and rise from, with that arm."""
+    up_m = np.array([0.0, 0.0, CLEARANCE_M])
     for goal in goals:
         for arm in nearest_arms(goal.position_m):
-            if arms.reachable(arm, goal):
+            if arms.reachable(arm, above(goal, CLEARANCE_M, up_m)):
                 return arm, goal
     return None

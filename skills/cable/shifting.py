@@ -17,9 +17,11 @@ from skills.motion.steps import MOTION_REASONS, descend, move_by, release, set_g
 
 # Thesis section 3.5: uniform displacement in a square of 10 cm x 10 cm.
 HALF_SQUARE_M = 0.05
-# Of so many random displacements the one with the most room is taken.
+# Of so many random displacements the ones with the most room come first.
 DRAWS = 16
 LIFT_M = 0.03
+# How many of them are tried when the arm cannot make the first.
+MOST_STEPS = 6
 # Cable nearer than this to the held point moves along with it.
 OWN_PX = 60.0
 
@@ -64,10 +66,16 @@ class ShiftSkill(Skill):
         if not self._arms.holds(arm):
             yield from release(self._arms, (arm,), CLEARANCE_M)
             return failure("grasp.missed", f"the {arm} gripper closed on nothing")
-        room = room_map(self._vision.cable_pixels(frame.image), holds[goals.index(goal)])
-        step_m = roomiest_step(frame, holds[goals.index(goal)].leading_px, room, self._rng)
-        for leg_m in (np.array([0.0, 0.0, LIFT_M]), step_m, np.array([0.0, 0.0, -LIFT_M])):
-            failed = failed or (yield from move_by(self._arms, {arm: leg_m}))
+        hold = holds[goals.index(goal)]
+        room = room_map(self._vision.cable_pixels(frame.image), hold)
+        lift_m = np.array([0.0, 0.0, LIFT_M])
+        failed = yield from move_by(self._arms, {arm: lift_m})
+        for step_m in roomiest_steps(frame, hold.leading_px, room, self._rng):
+            failed = yield from move_by(self._arms, {arm: step_m})
+            if failed is None:
+                break
+        laid = yield from move_by(self._arms, {arm: -lift_m})
+        failed = failed or laid
         risen = yield from release(self._arms, (arm,), CLEARANCE_M)
         return _outcome(failed or risen)
 
@@ -91,16 +99,16 @@ def room_map(cable: NDArray[np.bool_], hold: Hold) -> Room:
     return room_px
 
 
-def roomiest_step(
+def roomiest_steps(
     frame: CameraFrame, leading_px: Points, room_px: Room, rng: np.random.Generator
-) -> Floats:
-    """Return the level displacement [m] after which `leading_px` has the most room."""
+) -> list[Floats]:
+    """Return random level displacements [m], those first that leave `leading_px` most room."""
     steps_m = np.zeros((DRAWS, 3))
     steps_m[:, :2] = rng.uniform(-HALF_SQUARE_M, HALF_SQUARE_M, (DRAWS, 2))
     here_m = frame.camera.on_plane(leading_px)[0]
     places_px = frame.camera.project(here_m + steps_m)
-    best: Floats = steps_m[int(np.argmax([room_px(place) for place in places_px]))]
-    return best
+    order = np.argsort([-room_px(place) for place in places_px], kind="stable")
+    return [steps_m[number] for number in order[:MOST_STEPS]]
 
 
 def _outcome(failed: MotionFailure | None) -> Outcome:

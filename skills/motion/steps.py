@@ -44,8 +44,12 @@ def above(goal: TcpGoal, clearance_m: float, *then_m: Floats) -> TcpGoal:
 
 
 def descend(arms: DualArm, goals: Mapping[Arm, TcpGoal], clearance_m: float) -> MotionSteps:
-    """Go to `clearance_m` above each goal, then straight down onto it."""
-    hover = {arm: above(goal, clearance_m) for arm, goal in goals.items()}
+    """Go to `clearance_m` above each goal, then straight down onto it.
+
+    Configurations are chosen from which the tool can also go straight up again.
+    """
+    up_m = np.array([0.0, 0.0, clearance_m])
+    hover = {arm: above(goal, clearance_m, up_m) for arm, goal in goals.items()}
     failed = yield from follow(arms, arms.plan(hover))
     if failed is not None:
         return failed
