@@ -48,17 +48,26 @@ class ArmSpec:
 SINGULAR_ZONE = 0.1
 
 
+# Inverse kinematics stays that far from the joint limits: curves through its answers swing out.
+LIMIT_RESERVE_RAD = 0.005
+
+
 class ArmKinematics:
-    """Forward kinematics and Jacobian of one arm, everything else of the robot locked."""
+    """Forward kinematics and Jacobian of one arm, everything else of the robot locked.
+
+    Attributes:
+        model: The reduced model.
+        lower: What inverse kinematics may use [rad], shape (7,); the limits are a little wider.
+        upper: As `lower`.
+    """
 
     def __init__(self, model: pin.Model, tcp: str) -> None:
         """Take the reduced model of an arm and the name of its tool frame."""
         self.model = model
         self._data = model.createData()
         self._tcp = model.getFrameId(tcp)
-        self.lower: Floats = model.lowerPositionLimit.copy()
-        self.upper: Floats = model.upperPositionLimit.copy()
-        self.velocity: Floats = model.velocityLimit.copy()
+        self.lower: Floats = model.lowerPositionLimit + LIMIT_RESERVE_RAD
+        self.upper: Floats = model.upperPositionLimit - LIMIT_RESERVE_RAD
 
     @property
     def shoulder_m(self) -> Floats:

@@ -28,6 +28,7 @@ class PlannerSettings:
         path_checks: Collision checks that one RRT-Connect query may spend.
         path_goals: Solutions to which a path is searched.
         corner_tries: Shortcuts in time that are tried.
+        line_timings: Ways along a line that are timed and verified.
         speed_scale: 1 is the joints' full speed.
         line_speed_m_s: Largest tool speed on lines [m/s].
     """
@@ -36,6 +37,7 @@ class PlannerSettings:
     path_checks: int = 20_000
     path_goals: int = 3
     corner_tries: int = 40
+    line_timings: int = 4
     speed_scale: float = 1.0
     line_speed_m_s: float = 0.25
 
@@ -96,12 +98,16 @@ class MotionPlanner:
         self, start_rad: Floats, displacements_m: Mapping[Arm, Floats]
     ) -> Trajectory | MotionFailure:
         """Plan straight tool motions of at least one arm, in step, orientation kept."""
-        failures = []
+        failures: list[MotionFailure] = []
+        timed = 0
         for lines in line_variants(self.robot, start_rad, displacements_m):
             answer = self._line(start_rad, displacements_m, lines)
             if not isinstance(answer, MotionFailure):
                 return answer
             failures.append(answer)
+            timed += answer.stage == "verify"
+            if timed >= self.settings.line_timings:
+                break
         return failures[0]
 
     def _line(
