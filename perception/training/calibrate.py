@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import torch
+from safetensors.torch import save_file
 from torch import Tensor, nn
 
 from perception.cable.tracers.modes import find_modes
@@ -85,6 +86,16 @@ def _figures(
     }
 
 
+@torch.inference_mode()
+def _write_golden(network: nn.Module, name: str, path: Path) -> None:
+    """Write one input and its answer, by which a changed runtime shows."""
+    task = {"crossing": CrossingTask, "tracer": TracerTask}[name]()
+    inputs = next(task.batches(MEASURE_SEED, 0, 1, BATCH))[0][:2].contiguous()
+    answer = network(inputs)
+    answer = answer if isinstance(answer, Tensor) else answer[0]
+    save_file({"inputs": inputs, "answer": answer.contiguous()}, path)
+
+
 def main() -> None:
     """Fit the temperature, and write it and the figures."""
     parser = argparse.ArgumentParser(prog="python -m perception.training.calibrate")
@@ -95,6 +106,7 @@ def main() -> None:
     config = read_config(folder)
     ways = {"crossing": calibrate_crossing, "tracer": calibrate_tracer}
     temperature, figures = ways[config.network](load_network(folder), options.batches)
+    _write_golden(load_network(folder), config.network, folder / "golden.safetensors")
     changed = config.model_copy(update={"temperature": temperature})
     (folder / "config.json").write_text(changed.model_dump_json(indent=2) + "\n")
     path = folder / "metrics.json"

@@ -81,7 +81,8 @@ class LearnedTracer:
         return Trace(
             points_px=view.image.back(best.points),
             end=best.end or TraceEnd.LOST,
-            probability=float(np.exp(best.log_probability)),
+            # Ways that met more than once are counted more than once.
+            probability=float(np.exp(min(best.log_probability, 0.0))),
         )
 
     def _starts(
