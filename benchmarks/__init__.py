@@ -1,0 +1,1 @@
+"""Each table of results as one command: `python -m benchmarks NAME`."""

@@ -1,0 +1,48 @@
+"""`python -m benchmarks [NAME|report]`: run a benchmark, or write docs/results.md from results."""
+
+import argparse
+import importlib
+import sys
+from pathlib import Path
+
+from benchmarks.harness import Benchmark, document
+from benchmarks.report import write_page
+
+BENCHMARKS = {
+    "untangling": ("benchmarks.untangling", "the untangling mission on fresh seeds"),
+}
+
+
+def main() -> None:
+    """Parse, run, print; without a name, list."""
+    parser = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__)
+    parser.add_argument("name", nargs="?", choices=[*sorted(BENCHMARKS), "report"])
+    parser.add_argument("--quick", action="store_true", help="a minute or two, for a first look")
+    parser.add_argument("--seed", type=int, default=0, help="first seed")
+    parser.add_argument("--json", type=Path, help="also write the result document here")
+    chosen = parser.parse_args()
+    if chosen.name is None:
+        for name, (_, about) in sorted(BENCHMARKS.items()):
+            print(f"{name:16} {about}")
+    elif chosen.name == "report":
+        print(write_page())
+    else:
+        _run(chosen.name, chosen.quick, chosen.seed, chosen.json)
+
+
+def _run(name: str, quick: bool, seed: int, target: Path | None) -> None:
+    module, about = BENCHMARKS[name]
+    benchmark = Benchmark(about, importlib.import_module(module).run)
+    rows = benchmark.run(quick, seed)
+    if quick:
+        print("quick run: these figures are not results")
+    for row in rows:
+        spread = f"[{row.low:.3g}, {row.high:.3g}]"
+        print(f"{row.name:36} {row.value:10.4g} {row.unit:4} n={row.n:<6} {spread:20} {row.goal}")
+    if target is not None:
+        target.write_text(document(name, seed, quick, rows), encoding="utf-8")
+        print(f"written: {target}", file=sys.stderr)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,87 @@
+"""What every benchmark gives: rows with n, an interval and a goal, in one JSON form."""
+
+import json
+import math
+import subprocess
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+import numpy as np
+
+RESULTS = Path(__file__).parent / "results"
+# 97.5 % quantile of the normal distribution: intervals hold 95 %.
+Z = 1.959964
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """One figure.
+
+    Attributes:
+        name: Stable name; docs/results.md and outside checks use it.
+        value: The figure.
+        unit: Its unit, `1` for shares and ratios.
+        n: How many samples it is made of.
+        low: Lower end of the 95 % interval.
+        high: Upper end.
+        goal: What it should reach, as text with its direction, e.g. `>= 5`; empty for none.
+    """
+
+    name: str
+    value: float
+    unit: str
+    n: int
+    low: float
+    high: float
+    goal: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Benchmark:
+    """A benchmark by name.
+
+    Attributes:
+        about: One line for the list.
+        run: Takes (quick, seed), returns the rows.
+    """
+
+    about: str
+    run: Callable[[bool, int], Sequence[Row]]
+
+
+def share(name: str, hits: int, n: int, goal: str = "") -> Row:
+    """Return a share with its Wilson interval (E. B. Wilson, JASA 1927)."""
+    p, z2 = hits / n, Z * Z
+    centre = (p + z2 / (2 * n)) / (1 + z2 / n)
+    half = Z / (1 + z2 / n) * math.sqrt(p * (1 - p) / n + z2 / (4 * n * n))
+    return Row(name, p, "1", n, max(0.0, centre - half), min(1.0, centre + half), goal)
+
+
+def median(name: str, samples: Sequence[float], unit: str, goal: str = "") -> Row:
+    """Return a median with its interval from order statistics (binomial, normal approximation)."""
+    ordered = np.sort(np.asarray(samples, dtype=float))
+    n = len(ordered)
+    reach = Z * math.sqrt(n) / 2
+    low = ordered[max(0, math.floor(n / 2 - reach))]
+    high = ordered[min(n - 1, math.ceil(n / 2 + reach))]
+    return Row(name, float(np.median(ordered)), unit, n, float(low), float(high), goal)
+
+
+def document(name: str, seed: int, quick: bool, rows: Sequence[Row]) -> str:
+    """Return the result document of one run as JSON."""
+    content = {
+        "benchmark": name,
+        "commit": _commit(),
+        "seed": seed,
+        "quick": quick,
+        "rows": [asdict(row) for row in rows],
+    }
+    return json.dumps(content, indent=1) + "\n"
+
+
+def _commit() -> str:
+    answer = subprocess.run(
+        ["git", "describe", "--always", "--dirty"], capture_output=True, text=True, check=False
+    )
+    return answer.stdout.strip() or "unknown"
