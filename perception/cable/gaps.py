@@ -25,7 +25,7 @@ class GapConfig:
         connector_ratio: A dead end this much wider than the cable is a connector.
     """
 
-    widest_widths: float = 1.3
+    widest_widths: float = 1.6
     direction_widths: float = 2.5
     connector_ratio: float = 1.3
 

@@ -8,7 +8,7 @@ the cheapest edges that leave no node odd. What stays odd is an end that lies on
 
 import itertools
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import networkx as nx
@@ -24,9 +24,9 @@ class JunctionConfig:
     """Settings of how strands may go on; lengths in cable widths, costs in nats.
 
     Attributes:
-        bridge_widths: Longest bridge of single width.
-        thick_bridge_widths: Longest bridge that is as thick as two strands.
-        thick_ratio: From here on an edge is thick, as a multiple of the usual radius.
+        thin_cost: Cost of a width of bridge that is no thicker than one strand.
+        thick_cost: Cost of a width of bridge that is clearly thicker.
+        thick_ratio: From here on an edge is clearly thicker, as a multiple of the usual radius.
         near_widths: Where on an arm its direction is measured from.
         far_widths: And to where.
         bend_cost: Cost of bending energy, the integral of curvature squared, times width.
@@ -36,8 +36,8 @@ class JunctionConfig:
         most_arms: Nodes with more arms are paired greedily.
     """
 
-    bridge_widths: float = 3.5
-    thick_bridge_widths: float = 12.0
+    thin_cost: float = 2.2
+    thick_cost: float = 0.35
     thick_ratio: float = 1.25
     near_widths: float = 0.8
     far_widths: float = 3.2
@@ -97,12 +97,9 @@ def find_junctions(
     """Return the junctions of a graph with the ways in which strands go on."""
     config = config or JunctionConfig()
     radius_px = usual_radius(graph)
-    thick = {
-        number: float(np.median(edge.radius_px)) > config.thick_ratio * radius_px
-        for number, edge in enumerate(graph.edges)
-    }
-    bridges = _bridges(graph, thick, width_px, config)
-    maker = _OptionMaker(graph, thick, width_px, config)
+    ratios = [float(edge.radius_px.mean()) / radius_px for edge in graph.edges]
+    bridges = _bridges(graph, ratios, width_px, config)
+    maker = _OptionMaker(graph, ratios, width_px, config)
     junctions = []
     for nodes in _groups(graph, bridges):
         arms = tuple(arm for node in nodes for arm in graph.arms[node] if arm[0] not in bridges)
@@ -112,34 +109,35 @@ def find_junctions(
 
 
 def _bridges(
-    graph: SkeletonGraph,
-    thick: dict[int, bool],
-    width_px: float,
-    config: JunctionConfig,
+    graph: SkeletonGraph, ratios: Sequence[float], width_px: float, config: JunctionConfig
 ) -> frozenset[int]:
-    """Return the edges to double so that as few nodes as possible stay odd."""
+    """Return the edges to double so that as few nodes as possible stay odd.
+
+    A way of doubled edges must cost less than the two loose ends that it saves.
+    """
     roads: nx.Graph[int] = nx.Graph()
-    for number, edge in enumerate(graph.edges):
-        longest = config.thick_bridge_widths if thick[number] else config.bridge_widths
-        share = edge.length_px / (longest * width_px)
+    for number, (edge, ratio) in enumerate(zip(graph.edges, ratios, strict=True)):
         a, b = edge.nodes
+        thickness = min(max((ratio - 1.05) / (config.thick_ratio - 1.05), 0.0), 1.0)
+        cost = config.thin_cost + thickness * (config.thick_cost - config.thin_cost)
+        cost *= edge.length_px / width_px
         inner = len(graph.arms[a]) > 1 and len(graph.arms[b]) > 1 and a != b
         known = roads.get_edge_data(a, b, {"weight": math.inf})
-        if inner and share < min(1.0, known["weight"]):
-            roads.add_edge(a, b, weight=share, number=number)
+        if inner and cost < min(2.0 * config.loose_cost, known["weight"]):
+            roads.add_edge(a, b, weight=cost, number=number)
     odd = [node for node, arms in enumerate(graph.arms) if node in roads and len(arms) % 2]
-    return _postman(roads, odd)
+    return _postman(roads, odd, 2.0 * config.loose_cost)
 
 
-def _postman(roads: "nx.Graph[int]", odd: list[int]) -> frozenset[int]:
-    """Return the edges of cheapest ways between pairs of odd nodes, each below 1 in all."""
+def _postman(roads: "nx.Graph[int]", odd: list[int], limit: float) -> frozenset[int]:
+    """Return the edges of the cheapest ways between pairs of odd nodes, each below a limit."""
     wishes: nx.Graph[int] = nx.Graph()
     ways: dict[tuple[int, int], list[int]] = {}
     for a in odd:
-        lengths, paths = nx.single_source_dijkstra(roads, a, cutoff=1.0)
+        lengths, paths = nx.single_source_dijkstra(roads, a, cutoff=limit)
         for b in odd:
             if a < b and b in lengths:
-                wishes.add_edge(a, b, weight=1.0 - lengths[b] + 1e-3)
+                wishes.add_edge(a, b, weight=limit - lengths[b] + 1e-3)
                 ways[a, b] = paths[b]
     doubled: set[int] = set()
     for a, b in sorted(map(sorted, nx.max_weight_matching(wishes))):
@@ -177,11 +175,11 @@ class _OptionMaker:
     def __init__(
         self,
         graph: SkeletonGraph,
-        thick: dict[int, bool],
+        ratios: Sequence[float],
         width_px: float,
         config: JunctionConfig,
     ) -> None:
-        self.graph, self.thick, self.width_px, self.config = graph, thick, width_px, config
+        self.graph, self.ratios, self.width_px, self.config = graph, ratios, width_px, config
 
     def options(self, arms: tuple[Arm, ...]) -> tuple[Option, ...]:
         if len(arms) == 1:
@@ -208,7 +206,8 @@ class _OptionMaker:
         """Say whether an arm is the merged end of a narrow bend."""
         edge = self.graph.edges[arm[0]]
         dead = len(self.graph.arms[edge.nodes[1 - arm[1]]]) == 1
-        return dead and self.thick[arm[0]] and edge.length_px < 4.0 * self.width_px
+        thick = self.ratios[arm[0]] > self.config.thick_ratio
+        return dead and thick and edge.length_px < 4.0 * self.width_px
 
     def _bend_cost(
         self, a: tuple[Points, Points], b: tuple[Points, Points], hairpin: bool
