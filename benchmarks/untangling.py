@@ -53,7 +53,7 @@ def run(quick: bool, seed: int) -> Sequence[Row]:
 def trial(knot: str, seed: int) -> Trial:
     """Run the mission once in a process of its own."""
     with tempfile.TemporaryDirectory() as folder:
-        command = [sys.executable, "-m", "executive.cli.main", "run", str(MISSION), "--json"]
+        command = [str(Path(sys.executable).with_name("cellwright")), "run", str(MISSION), "--json"]
         command += ["--seed", str(seed), "--set", f"cable.knot={knot}"]
         command += ["--record", str(Path(folder) / "run.mcap")]
         environment = {**os.environ, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
