@@ -1,7 +1,7 @@
 """The compiled solver of the rod: extended position-based dynamics with small steps.
 
-Each step predicts positions, then corrects them: bending node by node, stretch of the whole
-chain at once (its constraints form a tridiagonal system), grasps and contacts one by one.
+Each step predicts positions, then corrects them: bending and stretch each for the whole chain
+at once (banded linear systems), grasps and contacts one by one.
 One pass over many small steps converges better than many passes over few large ones
 (Macklin et al., "Small Steps in Physics Simulation", 2019); the direct stretch solve follows
 Deul et al., "Direct Position-Based Solver for Stiff Rods", 2018.
@@ -23,7 +23,7 @@ Vector = tuple[float, float, float]
 
 kernel = numba.njit(cache=True, error_model="numpy")
 
-# A step never pushes strands apart, or a strand out of an obstacle, by more than this [m].
+# A step never pushes strands apart, or the cable out of an obstacle, by more than this [m].
 LARGEST_PUSH_M = 0.004
 LARGEST_OBSTACLE_PUSH_M = 0.0005
 # From these tensions on, steps are split into two and into four [N].
@@ -51,7 +51,9 @@ class Chain(NamedTuple):
     velocities: Floats  # (N, 3)
     inverse_masses: Floats  # (N,)
     rest_lengths: Floats  # (N - 1,)
-    bending_compliances: Floats  # (N,)
+    bending_stiffness: Floats  # (N,), B / ds^3, zero at both ends
+    factor: Floats  # (N, 3), of the bending step: diagonal, first and second below it
+    moves: Floats  # (N, 3), scratch
     tensions: Floats  # (N - 1,), mean over the last advance [N]
     peak: Floats  # (1,), greatest tension of late [N]
     directions: Floats  # (N - 1, 3), scratch
@@ -127,13 +129,17 @@ def advance(
     """Advance by `steps` steps of `step_s` each."""
     chain.tensions.fill(0.0)
     rings.force.fill(0.0)
+    factored = 0
     for step in range(steps):
         parts = _parts(chain.peak[0])
         part_s, share = step_s / parts, 1.0 / (steps * parts)
+        if parts != factored:
+            _factor_bending(chain, constants, part_s)
+            factored = parts
         for part in range(parts):
             done = (step * parts + part + 1.0) * share
             _predict(chain, constants, part_s)
-            _bend(chain, constants, part_s, part == step % 2)
+            _bend(chain, constants, part_s)
             _stretch(chain, rings, constants, part_s, share)
             if _is_stale(chain, near, obstacles, done):
                 _list_pairs(chain, near, constants)
@@ -253,23 +259,66 @@ def _update_velocities(chain: Chain, step_s: float) -> None:
 
 
 @kernel
-def _bend(chain: Chain, constants: Constants, step_s: float, forward: bool) -> None:
-    """Pull second differences to zero: energy |x- - 2x + x+|^2 B / (2 ds^3)."""
-    x, before, w = chain.positions, chain.previous, chain.inverse_masses
-    gamma = constants.bending_damping / step_s
-    rate = 1.0 / step_s**2
+def _factor_bending(chain: Chain, constants: Constants, step_s: float) -> None:
+    """Factor M + (h^2 + h tau) K into L D L^T; K is the stiffness of bending.
+
+    Bending energy is a quadratic form in second differences, sum of k |x- - 2x + x+|^2 / 2 with
+    k = B / ds^3, so that its implicit step is one banded linear system that stays the same.
+    """
+    k, factor = chain.bending_stiffness, chain.factor
+    scale = step_s * (step_s + constants.bending_damping)
+    count = len(k)
+    for i in range(count):
+        before = k[i - 1] if i > 0 else 0.0
+        after = k[i + 1] if i < count - 1 else 0.0
+        middle = 1.0 / chain.inverse_masses[i] + scale * (before + 4.0 * k[i] + after)
+        first, second = 0.0, 0.0
+        if i > 1:
+            second = scale * before / factor[i - 2, 0]
+            middle -= second * second * factor[i - 2, 0]
+        if i > 0:
+            first = -2.0 * scale * (before + k[i])
+            if i > 1:
+                first -= second * factor[i - 2, 0] * factor[i - 1, 1]
+            first /= factor[i - 1, 0]
+            middle -= first * first * factor[i - 1, 0]
+        factor[i, 0], factor[i, 1], factor[i, 2] = middle, first, second
+
+
+@kernel
+def _bend(chain: Chain, constants: Constants, step_s: float) -> None:
+    """Make the implicit step of bending and its damping, exactly, for the whole chain."""
+    x, before, k, factor = (
+        chain.positions,
+        chain.previous,
+        chain.bending_stiffness,
+        chain.factor,
+    )
+    square, damped = step_s**2, step_s * constants.bending_damping
     count = len(x)
-    for n in range(1, count - 1):
-        i = n if forward else count - 1 - n
-        weight = w[i - 1] + 4.0 * w[i] + w[i + 1]
-        scale = -1.0 / ((1.0 + gamma) * weight + chain.bending_compliances[i] * rate)
-        for k in range(3):
-            now = x[i - 1, k] - 2.0 * x[i, k] + x[i + 1, k]
-            then = before[i - 1, k] - 2.0 * before[i, k] + before[i + 1, k]
-            push = (now + gamma * (now - then)) * scale
-            x[i - 1, k] += w[i - 1] * push
-            x[i, k] -= 2.0 * w[i] * push
-            x[i + 1, k] += w[i + 1] * push
+    move = chain.moves
+    move.fill(0.0)
+    for i in range(1, count - 1):
+        for axis in range(3):
+            now = x[i - 1, axis] - 2.0 * x[i, axis] + x[i + 1, axis]
+            then = before[i - 1, axis] - 2.0 * before[i, axis] + before[i + 1, axis]
+            pull = k[i] * (square * now + damped * (now - then))
+            move[i - 1, axis] -= pull
+            move[i, axis] += 2.0 * pull
+            move[i + 1, axis] -= pull
+    for i in range(1, count):
+        for axis in range(3):
+            move[i, axis] -= factor[i, 1] * move[i - 1, axis]
+            if i > 1:
+                move[i, axis] -= factor[i, 2] * move[i - 2, axis]
+    for i in range(count - 1, -1, -1):
+        for axis in range(3):
+            move[i, axis] /= factor[i, 0]
+            if i < count - 1:
+                move[i, axis] -= factor[i + 1, 1] * move[i + 1, axis]
+            if i < count - 2:
+                move[i, axis] -= factor[i + 2, 2] * move[i + 2, axis]
+            x[i, axis] += move[i, axis]
 
 
 @kernel

@@ -13,7 +13,7 @@ class RodParameters:
         density_kg_m: Mass per length.
         connector_mass_kg: Mass of the plug at each end.
         connector_length_m: Length of the plug; it covers the last stretch of the node chain.
-        bending_stiffness_n_m2: E I; 2e-4 lets a 10 cm overhang sag by about 2 cm.
+        bending_stiffness_n_m2: E I; of a soft cable, which keeps to curves of 5 cm radius.
         bending_damping_s: Ratio of bending damping to bending stiffness (Kelvin-Voigt).
         axial_stiffness_n: E A; high enough that the cable does not visibly stretch.
         air_damping_1_s: Rate at which free motion dies out.
@@ -38,7 +38,7 @@ class RodParameters:
     density_kg_m: float = 0.035
     connector_mass_kg: float = 0.004
     connector_length_m: float = 0.02
-    bending_stiffness_n_m2: float = 2.0e-4
+    bending_stiffness_n_m2: float = 5.0e-5
     bending_damping_s: float = 0.01
     axial_stiffness_n: float = 1.0e4
     air_damping_1_s: float = 0.2

@@ -86,7 +86,7 @@ class Rod:
         moving = 0.5 * masses_kg @ np.einsum("ij,ij->i", chain.velocities, chain.velocities)
         lifted = parameters.gravity_m_s2 * masses_kg @ chain.positions[:, 2]
         bends = np.diff(chain.positions, n=2, axis=0)
-        bent = 0.5 * np.einsum("ij,ij->i", bends, bends) @ (1.0 / chain.bending_compliances[1:-1])
+        bent = 0.5 * np.einsum("ij,ij->i", bends, bends) @ chain.bending_stiffness[1:-1]
         return float(moving + lifted + bent)
 
     def connector_poses(self) -> Floats:
@@ -261,10 +261,11 @@ def _chain(nodes_m: Floats, parameters: RodParameters) -> kernels.Chain:
     plug = min(_plug_nodes(parameters), len(nodes_m) // 2 - 1)
     masses_kg[: plug + 1] += parameters.connector_mass_kg / (plug + 1)
     masses_kg[-plug - 1 :] += parameters.connector_mass_kg / (plug + 1)
-    compliances = np.full(len(nodes_m), parameters.node_spacing_m**3)
-    compliances /= parameters.bending_stiffness_n_m2
-    compliances[:plug] *= PLUG_COMPLIANCE
-    compliances[-plug:] *= PLUG_COMPLIANCE
+    stiffness = np.full(len(nodes_m), parameters.bending_stiffness_n_m2)
+    stiffness /= parameters.node_spacing_m**3
+    stiffness[:plug] *= PLUG_STIFFNESS
+    stiffness[-plug:] *= PLUG_STIFFNESS
+    stiffness[[0, -1]] = 0.0
     segments = len(nodes_m) - 1
     return kernels.Chain(
         positions=nodes_m,
@@ -272,7 +273,9 @@ def _chain(nodes_m: Floats, parameters: RodParameters) -> kernels.Chain:
         velocities=np.zeros_like(nodes_m),
         inverse_masses=1.0 / masses_kg,
         rest_lengths=lengths_m,
-        bending_compliances=compliances,
+        bending_stiffness=stiffness,
+        factor=np.zeros_like(nodes_m),
+        moves=np.zeros_like(nodes_m),
         tensions=np.zeros(segments),
         peak=np.zeros(1),
         directions=np.zeros((segments, 3)),
@@ -282,8 +285,8 @@ def _chain(nodes_m: Floats, parameters: RodParameters) -> kernels.Chain:
     )
 
 
-# A plug bends this much less than the cable.
-PLUG_COMPLIANCE = 0.01
+# A plug is this much stiffer than the cable.
+PLUG_STIFFNESS = 100.0
 
 
 def _neighbours(nodes: int, capsules: int) -> kernels.Neighbours:
