@@ -5,7 +5,7 @@ from typing import Annotated
 
 from executive.core.skill import In, SkillRun
 from perception.cable.grasp_sites import sites_between
-from perception.cable.types import Crossing, Points, Trace
+from perception.cable.types import Crossing, Points, Trace, TraceEnd
 from perception.camera import CameraFrame
 from skills.cable.shifting import Hold, ShiftSkill
 
@@ -16,7 +16,7 @@ REACH_ARC = 0.08
 
 
 class PerturbDoubt(ShiftSkill):
-    """Grasp the cable beside its least sure crossing, or where its trace was lost, and shift it.
+    """Grasp the cable beside its least sure place and shift it into free space.
 
     Strands that are too close to be told apart are told apart when one of them moves.
 
@@ -41,9 +41,16 @@ class PerturbDoubt(ShiftSkill):
 
 
 def _doubt(trace: Trace, crossings: Sequence[Crossing]) -> tuple[float, Points]:
-    """Return arc position and image point of the least sure crossing, or of the trace's end."""
+    """Return arc position and image point of what is in doubt.
+
+    That is the least sure crossing; else where the trace was lost; else where it runs closest
+    beside itself.
+    """
     doubtful = [crossing for crossing in crossings if crossing.probability < SURE]
-    if not doubtful:
+    if doubtful:
+        least = min(doubtful, key=lambda crossing: crossing.probability)
+        return least.arc_over, least.position_px
+    if trace.end is not TraceEnd.ENDPOINT:
         return 1.0, trace.points_px[-1]
-    least = min(doubtful, key=lambda crossing: crossing.probability)
-    return least.arc_over, least.position_px
+    closest = min(sites_between(trace, 0.0, 1.0), key=lambda site: site.room_px)
+    return closest.arc, closest.point_px
