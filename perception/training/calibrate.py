@@ -23,11 +23,13 @@ from perception.training.calibration import (
     selective_error,
 )
 from perception.training.crossing import CrossingTask
+from perception.training.loop import Task
 from perception.training.tracer import HIT_CROP_PX, TracerTask
 from perception.training.tracer_samples import NOWHERE
 
 FIT_SEED, MEASURE_SEED = 910_001, 920_001
 BATCH = 128
+STEP_TEMPERATURES = tuple(round(0.7 + 0.1 * k, 1) for k in range(14))
 
 
 @torch.inference_mode()
@@ -45,22 +47,43 @@ def _crossing_logits(network: nn.Module, seed: int, batches: int) -> Tensor:
     return torch.cat([network(next(stream)[0]).float() for _ in range(batches)])
 
 
-@torch.inference_mode()
 def calibrate_tracer(network: nn.Module, batches: int) -> tuple[float, dict[str, float]]:
-    """Return temperature (always 1) and figures of single steps of a tracer network."""
-    stream = TracerTask().batches(MEASURE_SEED, 0, 1, BATCH)
-    confidence, right = [], []
+    """Return temperature and figures of single steps of a tracer network."""
+    logits, targets = _tracer_logits(network, FIT_SEED, batches)
+    temperature = min(STEP_TEMPERATURES, key=lambda t: _log_loss(*_judged(logits, targets, t)))
+    logits, targets = _tracer_logits(network, MEASURE_SEED, batches)
+    return temperature, _figures(*_judged(logits, targets, temperature))
+
+
+@torch.inference_mode()
+def _tracer_logits(network: nn.Module, seed: int, batches: int) -> tuple[Tensor, Tensor]:
+    stream = TracerTask().batches(seed, 0, 1, BATCH)
+    logits, targets = [], []
     for _ in range(batches):
-        crops, targets = next(stream)
-        heat, stop = network(crops)
-        beliefs = torch.softmax(step_logits(heat, stop), 1).double().numpy()
-        for belief, target in zip(beliefs, targets[:, 0].numpy(), strict=True):
-            answer = _answer(belief)
-            confidence.append(answer[0])
-            gone = target[0] <= NOWHERE
-            near = answer[1] is not None and np.linalg.norm(answer[1] - target) < HIT_CROP_PX
-            right.append(float(answer[1] is None if gone else near))
-    return 1.0, _figures(np.array(confidence), np.array(right))
+        crops, target = next(stream)
+        logits.append(step_logits(*network(crops)))
+        targets.append(target[:, 0])
+    return torch.cat(logits), torch.cat(targets)
+
+
+def _judged(logits: Tensor, targets: Tensor, temperature: float) -> tuple[Floats, Floats]:
+    """Return the belief in the best answer to each crop, and 1 where it is right."""
+    beliefs = torch.softmax(logits / temperature, 1).double().numpy()
+    answers = [_answer(belief) for belief in beliefs]
+    right = [
+        place is None if target[0] <= NOWHERE else place is not None and _near(place, target)
+        for (_, place), target in zip(answers, targets.double().numpy(), strict=True)
+    ]
+    return np.array([confidence for confidence, _ in answers]), np.array(right, dtype=float)
+
+
+def _near(place: Floats, target: Floats) -> bool:
+    return float(np.linalg.norm(place - target)) < HIT_CROP_PX
+
+
+def _log_loss(confidence: Floats, right: Floats) -> float:
+    believed = np.where(right > 0.0, confidence, 1.0 - confidence)
+    return -float(np.log(believed.clip(1e-6)).mean())
 
 
 def _answer(belief: Floats) -> tuple[float, Floats | None]:
@@ -89,7 +112,7 @@ def _figures(
 @torch.inference_mode()
 def _write_golden(network: nn.Module, name: str, path: Path) -> None:
     """Write one input and its answer, by which a changed runtime shows."""
-    task = {"crossing": CrossingTask, "tracer": TracerTask}[name]()
+    task: Task = CrossingTask() if name == "crossing" else TracerTask()
     inputs = next(task.batches(MEASURE_SEED, 0, 1, BATCH))[0][:2].contiguous()
     answer = network(inputs)
     answer = answer if isinstance(answer, Tensor) else answer[0]

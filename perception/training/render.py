@@ -58,12 +58,19 @@ class Look:
     connectors: bool
 
 
-def draw_look(rng: np.random.Generator, cables: int) -> Look:
-    """Draw a look of a scene: bright cables on dark tables in two thirds of all."""
+def draw_look(rng: np.random.Generator, cables: int, bright: bool | None = None) -> Look:
+    """Draw a look of a scene.
+
+    Args:
+        rng: Source of all randomness.
+        cables: How many cables there are.
+        bright: Whether cables are brighter than the table; None for two thirds of all.
+    """
     contrast = rng.uniform(35.0, 190.0)
     dark = rng.uniform(5.0, 240.0 - contrast)
-    bright_cable = rng.random() < 0.67
-    table, cable = (dark, dark + contrast) if bright_cable else (dark + contrast, dark)
+    drawn_bright = rng.random() < 0.67
+    bright = drawn_bright if bright is None else bright
+    table, cable = (dark, dark + contrast) if bright else (dark + contrast, dark)
     first = _cable_look(rng, cable)
     spread = rng.choice([0.0, 0.15])
     looks = tuple(

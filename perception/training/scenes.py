@@ -64,6 +64,7 @@ class SceneConfig:
         widest_px: Greatest width of a cable.
         family: One family of curves, or None for all.
         cables: Number of cables, or None for 1 to 3.
+        bright: Whether cables are brighter than the table, or None for either.
     """
 
     extent: float = 46.0
@@ -72,6 +73,7 @@ class SceneConfig:
     widest_px: float = 14.0
     family: str | None = None
     cables: int | None = None
+    bright: bool | None = None
 
 
 def make_scene(rng: np.random.Generator, config: SceneConfig | None = None) -> Scene:
@@ -84,7 +86,7 @@ def make_scene(rng: np.random.Generator, config: SceneConfig | None = None) -> S
     nodes, cable = _settled(rng, lines)
     parts = [nodes[cable == k] for k in range(len(lines))]
     origin_px = np.array([size_px[1] - side_px, size_px[0] - side_px]) / 2.0
-    look = draw_look(rng, len(lines))
+    look = draw_look(rng, len(lines), config.bright)
     strands = [
         np.column_stack([part[:, :2] * width_px + origin_px, part[:, 2] * width_px])
         for part in parts

@@ -32,6 +32,7 @@ class LearnedTracerConfig:
         modes: How many ways a path may go on in one step.
         least: Ways less likely than this are not followed.
         lost: Without any way or end more likely than this, a path is lost.
+        end_odds: How often a step meets an end of the cable, over how often it did in training.
         window: Paths less likely than the best by this factor are dropped [nats].
         most_steps: Longest trace.
         rivals: How paths that meet again are compared.
@@ -39,9 +40,10 @@ class LearnedTracerConfig:
 
     beam: int = 6
     modes: int = 3
-    least: float = 0.03
+    least: float = 0.05
     lost: float = 0.08
-    window: float = 6.0
+    end_odds: float = 0.15
+    window: float = 4.5
     most_steps: int = 600
     rivals: RivalConfig = field(default_factory=RivalConfig)
 
@@ -121,15 +123,16 @@ class LearnedTracer:
         ahead = []
         for path, outlook in zip(paths, self._model.outlooks(view, paths), strict=True):
             modes = find_modes(outlook.cells, config.least, config.modes)
-            believed = [outlook.end, *(mode.probability for mode in modes)]
+            end = config.end_odds * outlook.end
+            believed = [end, *(mode.probability for mode in modes)]
             # What lies beside the modes is the blur of the map, unless that is most of it.
             total = max(sum(believed), 0.5)
             ahead += [
                 path.extended(outlook.frame.back(mode.point_crop), mode.probability / total)
                 for mode in modes
             ]
-            if outlook.end > config.least:
-                ahead.append(path.ended(TraceEnd.ENDPOINT, outlook.end / total))
+            if end > config.least:
+                ahead.append(path.ended(TraceEnd.ENDPOINT, end / total))
             if max(believed) < config.lost:
                 ahead.append(path.ended(TraceEnd.LOST, config.lost))
         return ahead
