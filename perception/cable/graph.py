@@ -56,11 +56,13 @@ class SkeletonGraph:
         edges: Pieces of centre line.
         nodes_px: Middle of each node, shape (K, 2).
         arms: For each node, the ends of edges that meet there.
+        plugs: Numbers of the edges that are connectors; they start at the connector's free end.
     """
 
     edges: tuple[Edge, ...]
     nodes_px: Points
     arms: tuple[tuple[Arm, ...], ...]
+    plugs: frozenset[int] = frozenset()
 
 
 def build_graph(mask: CableMask) -> SkeletonGraph:
@@ -75,7 +77,7 @@ def build_graph(mask: CableMask) -> SkeletonGraph:
     new = {node: k for k, node in enumerate(numbers)}
     edges = [replace(edge, nodes=(new[edge.nodes[0]], new[edge.nodes[1]])) for edge in edges]
     nodes_px = np.array([middles[node] for node in numbers]).reshape(-1, 2)
-    return SkeletonGraph(tuple(edges), nodes_px, tuple(map(tuple, _arms(edges, len(numbers)))))
+    return SkeletonGraph(tuple(edges), nodes_px, arms_of(edges, len(numbers)))
 
 
 def _raw_edges(mask: CableMask) -> tuple[list[Edge], list[tuple[float, float]]]:
@@ -94,18 +96,19 @@ def _raw_edges(mask: CableMask) -> tuple[list[Edge], list[tuple[float, float]]]:
     return edges, middles
 
 
-def _arms(edges: Sequence[Edge], count: int) -> list[list[Arm]]:
+def arms_of(edges: Sequence[Edge], count: int) -> tuple[tuple[Arm, ...], ...]:
+    """Return for each of `count` nodes the ends of edges that meet there."""
     arms: list[list[Arm]] = [[] for _ in range(count)]
     for number, edge in enumerate(edges):
         arms[edge.nodes[0]].append((number, 0))
         arms[edge.nodes[1]].append((number, 1))
-    return arms
+    return tuple(map(tuple, arms))
 
 
 def _without_spurs(edges: list[Edge], width_px: float) -> list[Edge]:
     """Drop dead ends no longer than the mask is wide where they branch off, and tiny rings."""
     count = max((node for edge in edges for node in edge.nodes), default=-1) + 1
-    degree = [len(arms) for arms in _arms(edges, count)]
+    degree = [len(arms) for arms in arms_of(edges, count)]
     kept = []
     for edge in edges:
         if edge.nodes[0] == edge.nodes[1] and edge.length_px < RING_WIDTHS * width_px:

@@ -8,6 +8,8 @@ import numpy as np
 from perception.cable.gaps import close_gaps
 from perception.cable.graph import SkeletonGraph, build_graph
 from perception.cable.mask import CableMask, MaskConfig, find_mask
+from perception.cable.plug_ends import with_plugs
+from perception.cable.plugs import find_plugs
 from perception.camera import GreyImage
 
 
@@ -42,4 +44,6 @@ def _observe(pixels: bytes, shape: tuple[int, int], config: MaskConfig) -> Obser
     graph = build_graph(mask)
     if graph.edges and (closed := close_gaps(mask, graph)) is not None:
         mask, graph = closed, build_graph(closed)
-    return Observation(mask, graph) if graph.edges else None
+    if not graph.edges:
+        return None
+    return Observation(mask, with_plugs(graph, find_plugs(image, mask), mask.width_px))

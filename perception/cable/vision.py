@@ -11,11 +11,12 @@ from numpy.typing import NDArray
 from perception.cable.belief import knotted_probability
 from perception.cable.classifiers.continuity import ContinuityClassifier
 from perception.cable.classifiers.edges import EdgeClassifier
-from perception.cable.endpoints import EndpointConfig, find_endpoints
+from perception.cable.endpoints import EndpointConfig
 from perception.cable.grasp_points import GraspConfig
 from perception.cable.interfaces import CrossingClassifier, Tracer
 from perception.cable.knots import find_knots
 from perception.cable.observation import observe
+from perception.cable.plug_ends import find_ends
 from perception.cable.tracers.analytic import AnalyticTracer
 from perception.cable.tracers.skeleton import SkeletonTracer
 from perception.cable.types import CableScene, Crossing, Endpoint, Knot, Points, Trace
@@ -29,6 +30,11 @@ CLASSIFIERS: dict[str, Callable[[], CrossingClassifier]] = {
     "edges": EdgeClassifier,
     "continuity": ContinuityClassifier,
 }
+
+# Tracers finish up to this far from an end.
+REACHED_PX = 20.0
+# A second point this far into the cable tells a tracer which way to go from an end.
+AHEAD_PX = 4.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,7 +89,7 @@ class ClassicCableVision:
         observation = observe(self._seen(image))
         if observation is None:
             return ()
-        return find_endpoints(observation.mask, observation.graph, self._config.endpoints)
+        return find_ends(observation.mask, observation.graph, self._config.endpoints)
 
     def start_points(self, image: GreyImage, endpoint: Endpoint) -> Points | None:
         """Follow the cable for about 96 px from an end; None when other strands are too near."""
@@ -142,7 +148,8 @@ class ClassicCableVision:
         for endpoint in endpoints:
             if any(_touches(trace, endpoint) for trace in traces):
                 continue
-            trace = self.trace(image, endpoint.position_px[None], endpoints)
+            ahead = endpoint.position_px + AHEAD_PX * endpoint.direction
+            trace = self.trace(image, np.stack([endpoint.position_px, ahead]), endpoints)
             if trace is not None:
                 traces.append(trace)
         return tuple(traces)
@@ -151,4 +158,4 @@ class ClassicCableVision:
 def _touches(trace: Trace, endpoint: Endpoint) -> bool:
     """Say whether a trace starts or ends at an endpoint."""
     gaps = np.linalg.norm(trace.points_px[[0, -1]] - endpoint.position_px, axis=1)
-    return bool(gaps.min() < 15.0)
+    return bool(gaps.min() <= REACHED_PX)

@@ -88,6 +88,8 @@ class SkeletonTracer:
         leaving, offset = start
         arms, probability = strand_probabilities(threadings, leaving)[0]
         line = _Line(mask, graph, junctions, config).draw(arms, offset)
+        if arc_lengths(line)[-1] < mask.width_px:
+            return None
         end, line = self._end(mask, arms, line, endpoints)
         return Trace(line, end, probability)
 
