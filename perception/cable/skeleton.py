@@ -30,17 +30,16 @@ def thin(mask: Bools) -> Bools:
             flat[pixels[gone]] = 0
             pixels = pixels[~gone]
             changed |= bool(gone.any())
-    for removable in _CORNERS:
-        for pixel in pixels:
-            code_here = sum(int(flat[pixel + offset]) << bit for bit, offset in enumerate(offsets))
-            if removable[code_here]:
-                flat[pixel] = 0
-        pixels = pixels[flat[pixels] > 0]
+    # What is left is two pixels wide in places; there, one after the other can go.
+    for pixel in pixels.tolist():
+        code_here = sum(int(flat[pixel + offset]) << bit for bit, offset in enumerate(offsets))
+        if _SPARE[code_here]:
+            flat[pixel] = 0
     return padded[1:-1, 1:-1].astype(bool)
 
 
-def _tables() -> tuple[tuple[NDArray[np.bool_], ...], tuple[NDArray[np.bool_], ...]]:
-    """Return which of 256 neighbourhoods lose their centre, per sub-iteration, and at corners."""
+def _tables() -> tuple[tuple[NDArray[np.bool_], NDArray[np.bool_]], NDArray[np.bool_]]:
+    """Return which of 256 neighbourhoods lose their centre in each sub-iteration, and after."""
     bits = (np.arange(256)[:, None] >> np.arange(8)) & 1
     count = bits.sum(axis=1)
     rises = ((bits == 0) & (np.roll(bits, -1, axis=1) == 1)).sum(axis=1)
@@ -48,13 +47,11 @@ def _tables() -> tuple[tuple[NDArray[np.bool_], ...], tuple[NDArray[np.bool_], .
     border = (count >= 2) & (count <= 6) & (rises == 1)
     first = border & (up * right * down == 0) & (right * down * left == 0)
     second = border & (up * right * left == 0) & (up * down * left == 0)
-    # A stair's corner has both of two neighbouring sides set and nothing opposite.
-    corner = np.zeros(256, dtype=bool)
-    for k in range(0, 8, 2):
-        a, b = bits[:, k], bits[:, (k + 2) % 8]
-        opposite = bits[:, (k + 4) % 8] + bits[:, (k + 5) % 8] + bits[:, (k + 6) % 8]
-        corner |= (a + b == 2) & (opposite == 0)
-    return (first, second), (corner & (rises <= 2),)
+    # Connectivity number (S. Yokoi et al. 1975): 1 where the centre is not needed to connect.
+    off = 1 - bits
+    needed = sum(off[:, k] * (1 - off[:, (k + 1) % 8] * off[:, (k + 2) % 8]) for k in (0, 2, 4, 6))
+    corner = (up + down > 0) & (left + right > 0)
+    return (first, second), (needed == 1) & (count >= 3) & corner
 
 
-_REMOVABLE, _CORNERS = _tables()
+_REMOVABLE, _SPARE = _tables()
