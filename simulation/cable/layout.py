@@ -61,9 +61,11 @@ class LayoutRules:
 RELAX = 0.7
 # An arc is better when it could go on for this many times its length.
 LOOK_AHEAD = 3
+# How often a strand that could be crossed is crossed, though there may be another way.
+BOLDNESS = 0.5
 # How often an arc is tried before the last ones are taken back, and how often that may happen.
-TRIES = 10
-RETREATS = 60
+TRIES = 8
+RETREATS = 25
 
 
 def grow_end(
@@ -87,17 +89,18 @@ def grow_end(
     """
     wanted = round(length_m / rules.spacing_m)
     history: list[tuple[Floats, float, int]] = [(curve_m, 0.0, crossings)]
-    for _ in range(RETREATS):
+    retreats = 0
+    while retreats < RETREATS:
         curve, curvature, left = history[-1]
         grown = len(curve) - len(curve_m)
-        if grown >= wanted:
-            done = curve[: len(curve_m) + wanted]
-            return done if _end_is_clear(done, rules) else None
-        step = _next_arc(curve, curvature, left, rules, rng)
-        while step is not None and len(history[-1][0]) - len(curve_m) < wanted:
+        done = curve[: len(curve_m) + wanted]
+        if grown >= wanted and _end_is_clear(done, rules):
+            return done
+        step = None if grown >= wanted else _next_arc(curve, curvature, left, rules, rng)
+        if step is not None:
             history.append(step)
-            step = _next_arc(*step, rules, rng)
-        if step is None:
+        else:
+            retreats += 1
             del history[max(1, len(history) - int(rng.integers(2, 7))) :]
     return None
 
@@ -110,6 +113,13 @@ def _next_arc(
     rng: np.random.Generator,
 ) -> tuple[Floats, float, int] | None:
     """Return the curve with one more piece, its curvature, and the crossings left."""
+    straight = _arc(curve, 0.0, round(rules.crossing_m / rules.spacing_m), rules.spacing_m)
+    crosses = (
+        crossings > 0 and rules.area.contains(straight) and _crosses_once(straight, curve, rules)
+    )
+    crossed = np.vstack([curve, straight]), 0.0, crossings - 1
+    if crosses and rng.random() < BOLDNESS:
+        return crossed
     narrow: tuple[Floats, float, int] | None = None
     for _ in range(TRIES):
         bend = float(rng.normal(RELAX * curvature, rules.bend_1_m))
@@ -121,11 +131,7 @@ def _next_arc(
         narrow = np.vstack([curve, arc]), bend, crossings
         if rules.area.contains(ahead) and _clear(ahead, curve, rules):
             return narrow
-    if crossings > 0:
-        straight = _arc(curve, 0.0, round(rules.crossing_m / rules.spacing_m), rules.spacing_m)
-        if rules.area.contains(straight) and _crosses_once(straight, curve, rules):
-            return np.vstack([curve, straight]), 0.0, crossings - 1
-    return narrow
+    return crossed if crosses else narrow
 
 
 def _arc(curve: Floats, curvature: float, points: int, spacing: float) -> Floats:
