@@ -23,9 +23,7 @@ class Mode:
     probability: float
 
 
-def find_modes(
-    cells: Floats, least: float, most: int, reach: int = 2
-) -> tuple[Mode, ...]:
+def find_modes(cells: Floats, least: float, most: int, reach: int = 2) -> tuple[Mode, ...]:
     """Return the modes of a heat map, most likely first.
 
     Args:
