@@ -2,7 +2,7 @@
 
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 import numpy as np
@@ -20,6 +20,7 @@ from perception.cable.plug_ends import find_ends
 from perception.cable.tracers.analytic import AnalyticTracer
 from perception.cable.tracers.skeleton import SkeletonTracer
 from perception.cable.types import CableScene, Crossing, Endpoint, Knot, Points, Trace
+from perception.cable.wholeness import wholeness
 from perception.camera import GreyImage
 
 TRACERS: dict[str, Callable[[], Tracer]] = {
@@ -100,8 +101,17 @@ class ClassicCableVision:
     def trace(
         self, image: GreyImage, start_px: Points, endpoints: Sequence[Endpoint]
     ) -> Trace | None:
-        """Follow one cable; see `Tracer.trace`."""
-        return self._tracer.trace(self._seen(image), start_px, endpoints)
+        """Follow one cable; see `Tracer.trace`.
+
+        A trace that leaves cable out is not believed, however sure the tracer was of each step.
+        """
+        seen = self._seen(image)
+        trace, observation = self._tracer.trace(seen, start_px, endpoints), observe(seen)
+        if trace is None or observation is None:
+            return None
+        return replace(
+            trace, probability=trace.probability * wholeness(observation, trace.points_px)
+        )
 
     def crossings(self, image: GreyImage, traces: Sequence[Trace]) -> tuple[Crossing, ...]:
         """Classify all crossings; see `CrossingClassifier.classify`."""

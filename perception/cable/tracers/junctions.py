@@ -9,7 +9,7 @@ the cheapest edges that leave no node odd. What stays odd is an end that lies on
 import itertools
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import networkx as nx
 import numpy as np
@@ -32,6 +32,7 @@ class JunctionConfig:
         bend_cost: Cost of bending energy, the integral of curvature squared, times width.
         outlier_cost: From about here on a cost grows slower.
         loose_cost: Cost of a strand that ends at a junction.
+        lost_cost: The same when connectors show both ends of the cable.
         hairpin_cost: Cost of a strand that turns back where two strands merge.
         most_arms: Nodes with more arms are paired greedily.
     """
@@ -44,6 +45,7 @@ class JunctionConfig:
     bend_cost: float = 37.0
     outlier_cost: float = 8.0
     loose_cost: float = 7.0
+    lost_cost: float = 25.0
     hairpin_cost: float = 2.0
     most_arms: int = 8
 
@@ -96,6 +98,8 @@ def find_junctions(
 ) -> Junctions:
     """Return the junctions of a graph with the ways in which strands go on."""
     config = config or JunctionConfig()
+    if len(graph.plugs) > 1:
+        config = replace(config, loose_cost=config.lost_cost)
     radius_px = usual_radius(graph)
     ratios = [float(edge.radius_px.mean()) / radius_px for edge in graph.edges]
     bridges = _bridges(graph, ratios, width_px, config)
