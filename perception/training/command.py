@@ -2,12 +2,22 @@
 
 import argparse
 import json
+from collections.abc import Mapping
 from dataclasses import asdict
 from pathlib import Path
 
 from safetensors.torch import save_file
+from torch import Tensor
 
 from perception.training.loop import Recipe, Task, Trainer
+
+
+def compact(weights: Mapping[str, Tensor]) -> dict[str, Tensor]:
+    """Return weights to store: kernels at half precision, all else as it is."""
+    return {
+        name: (tensor.half() if tensor.dim() > 1 else tensor).detach().contiguous()
+        for name, tensor in weights.items()
+    }
 
 
 def main(task: Task) -> None:
@@ -24,11 +34,8 @@ def main(task: Task) -> None:
     recipe = Recipe(**options)
     trainer = Trainer(task, recipe, folder)
     figures = trainer.run()
-    weights = {
-        name: tensor.detach().contiguous()
-        for name, tensor in trainer.average.module.state_dict().items()
-    }
-    save_file(weights, folder / "weights.safetensors")
+    weights = trainer.average.module.state_dict()
+    save_file(compact(weights), folder / "weights.safetensors")
     _write(folder / "config.json", {"network": task.name, "widths": task.widths})
     _write(
         folder / "metrics.json",
