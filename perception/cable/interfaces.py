@@ -79,6 +79,10 @@ class CableVision(Protocol):
         """Follow one cable; see `Tracer.trace`."""
         ...
 
+    def explained_share(self, image: GreyImage, trace: Trace) -> float:
+        """Return the share of cable pixels in view that a trace accounts for, in [0, 1]."""
+        ...
+
     def crossings(self, image: GreyImage, traces: Sequence[Trace]) -> tuple[Crossing, ...]:
         """Classify all crossings; see `CrossingClassifier.classify`."""
         ...

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from perception.cable.belief import knotted_probability
 from perception.cable.classifiers.continuity import ContinuityClassifier
 from perception.cable.classifiers.edges import EdgeClassifier
+from perception.cable.coverage import explained_share
 from perception.cable.endpoints import EndpointConfig
 from perception.cable.grasp_points import GraspConfig
 from perception.cable.interfaces import CrossingClassifier, Tracer
@@ -112,6 +113,10 @@ class ClassicCableVision:
         return replace(
             trace, probability=trace.probability * wholeness(observation, trace.points_px)
         )
+
+    def explained_share(self, image: GreyImage, trace: Trace) -> float:
+        """Return the share of cable pixels in view that a trace accounts for, in [0, 1]."""
+        return explained_share(self.cable_pixels(image), trace.points_px)
 
     def crossings(self, image: GreyImage, traces: Sequence[Trace]) -> tuple[Crossing, ...]:
         """Classify all crossings; see `CrossingClassifier.classify`."""

@@ -4,7 +4,6 @@ from typing import Annotated
 
 from executive.core.outcome import failure, success
 from executive.core.skill import In, Port, Skill, SkillRun
-from perception.cable.coverage import explained_share
 from perception.cable.interfaces import CableVision
 from perception.cable.types import Trace
 from perception.camera import CameraFrame
@@ -32,7 +31,7 @@ class AccountForCable(Skill):
         share: Annotated[float, In("share that must be accounted for")] = 0.93,
     ) -> SkillRun:
         """Count cable pixels near the trace and away from it."""
-        explained = explained_share(self._vision.cable_pixels(frame.image), trace.points_px)
+        explained = self._vision.explained_share(frame.image, trace)
         yield
         if explained < share:
             text = f"the trace accounts for {explained:.0%} of the cable in view"

@@ -1,0 +1,84 @@
+import numpy as np
+import pytest
+from cell_fakes import ArrivingArms, finished, frame, overhand
+
+from perception.cable.grasp_sites import cage_sites, pinch_sites
+from skills.cable.dilate_knot import HANDS_APART_M, REACH_X_M, DilateKnot, apart, ranked_pairs
+
+
+def inputs(**more):
+    trace, crossings, knot = overhand()
+    return {"frame": frame(), "trace": trace, "crossings": crossings, "knots": (knot,), **more}
+
+
+def test_one_hand_cages_the_other_pinches_and_both_let_go_at_the_end():
+    arms = ArrivingArms()
+    outcome, _ = finished(DilateKnot(arms), inputs())
+    grips = [entry[1:] for entry in arms.log if entry[0] == "grip"]
+    assert outcome.status == "SUCCESS"
+    assert sorted(grip for _, grip in grips[:2]) == ["cage", "pinch"]
+    assert sorted(grips[2:]) == [("left", "open"), ("right", "open")]
+
+
+def test_hands_end_farther_apart_along_the_long_side_by_what_was_asked():
+    arms = ArrivingArms()
+    finished(DilateKnot(arms), inputs(travel_m=0.2))
+    moves = [entry[1] for entry in arms.log if entry[0] == "move"]
+    gaps = [np.linalg.norm(np.subtract(tools["left"], tools["right"])) for tools in moves]
+    assert gaps[3] - gaps[2] == pytest.approx(0.2, abs=0.002)  # hover, down, lift, then apart
+    assert moves[3]["left"][1] == pytest.approx(moves[3]["right"][1])
+
+
+def test_a_blocked_way_apart_is_tried_shorter():
+    arms = ArrivingArms()
+    skill = DilateKnot(arms)
+    skill.start(inputs())
+    while not any(entry[0] == "grip" for entry in arms.log):
+        skill.step()
+    while len([entry for entry in arms.log if entry[0] == "move"]) < 3:
+        skill.step()
+    arms.lines_blocked = 2
+    while (outcome := skill.step()).status == "RUNNING":
+        pass
+    assert outcome.status == "SUCCESS"
+
+
+def test_closing_on_nothing_is_a_miss_and_lets_go():
+    arms = ArrivingArms(held=False)
+    outcome, _ = finished(DilateKnot(arms), inputs())
+    assert outcome.reason.code == "grasp.missed"
+    assert arms.log[-2][0] == "grip" or arms.log[-1][0] == "move"
+
+
+def test_no_knot_is_a_reason_of_its_own_and_moves_nothing():
+    arms = ArrivingArms()
+    outcome, _ = finished(DilateKnot(arms), inputs() | {"knots": ()})
+    assert (outcome.reason.code, arms.log) == ("knot.none", [])
+
+
+def test_halting_stops_the_arms():
+    arms = ArrivingArms()
+    skill = DilateKnot(arms)
+    skill.start(inputs())
+    skill.step()
+    skill.halt()
+    assert arms.log[-1] == ("stop",)
+
+
+def test_pairs_leave_room_for_two_hands_and_prefer_a_pinch_inside_the_knot():
+    trace, crossings, knot = overhand()
+    cages, pinches = cage_sites(trace, crossings, knot), pinch_sites(trace, crossings, knot)
+    pairs = ranked_pairs(cages, pinches, knot, frame())
+    gaps_m = [np.linalg.norm(cage.point_px - pinch.point_px) / 1e3 for cage, pinch in pairs]
+    assert min(gaps_m) >= HANDS_APART_M
+    assert pairs[0][1].arc <= knot.interval[1] + 0.02
+
+
+@pytest.mark.parametrize("middle_x_m", [-0.3, 0.0, 0.25])
+def test_hands_never_leave_the_reach_when_they_move_apart(middle_x_m):
+    tips = {
+        arm: np.array([middle_x_m + s, 0.0, 0.04]) for arm, s in (("left", -0.06), ("right", 0.06))
+    }
+    ends = {arm: tips[arm] + way for arm, way in apart(tips, 0.6).items()}
+    assert all(abs(end[0]) <= REACH_X_M + 1e-9 for end in ends.values())
+    assert np.linalg.norm(ends["left"] - ends["right"]) == pytest.approx(0.6)

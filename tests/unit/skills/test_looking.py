@@ -1,0 +1,73 @@
+import numpy as np
+import pytest
+from cell_fakes import finished, frame, overhand
+
+from perception.cable.orientation import reversed_crossings, reversed_trace
+from perception.cable.types import Knot
+from skills.cable.account_for_cable import AccountForCable
+from skills.cable.detect_endpoints import DetectEndpoints
+from skills.cable.observe_workspace import ObserveWorkspace
+from skills.cable.orient_trace import OrientTrace
+from skills.cable.state_claim import StateClaim
+
+
+class KnotNearTheEnd:
+    """Finds a knot over the last fifth of the path that runs to the right."""
+
+    def __init__(self, trace):
+        self.forward = trace.points_px
+
+    def knots(self, image, traces, crossings):
+        same = np.allclose(traces[0].points_px, self.forward)
+        interval = (0.8, 0.9) if same else (0.1, 0.2)
+        nothing = np.zeros(2)
+        return (Knot(0, interval, nothing, nothing, nothing, nothing, nothing),)
+
+    def endpoints(self, image):
+        return ()
+
+    def explained_share(self, image, trace):
+        return 0.5
+
+
+class DarkCamera:
+    def capture(self):
+        dark = frame()
+        dark.image[:] = 7
+        return dark
+
+
+def test_a_trace_is_turned_to_the_end_that_is_nearer_to_its_knot():
+    trace, crossings, _ = overhand()
+    skill = OrientTrace(KnotNearTheEnd(trace))
+    outcome, _ = finished(skill, {"frame": frame(), "trace": trace, "crossings": crossings})
+    assert np.allclose(outcome.outputs["trace"].points_px, trace.points_px[::-1])
+    assert outcome.outputs["crossings"][0].arc_over == pytest.approx(1 - crossings[0].arc_over)
+
+
+def test_turning_round_twice_changes_nothing():
+    trace, crossings, _ = overhand()
+    assert np.allclose(reversed_trace(reversed_trace(trace)).points_px, trace.points_px)
+    twice = reversed_crossings(reversed_crossings(crossings))
+    assert twice[0].arc_under == pytest.approx(crossings[0].arc_under)
+
+
+def test_cable_that_is_left_over_forbids_a_claim():
+    trace, _, _ = overhand()
+    skill = AccountForCable(KnotNearTheEnd(trace))
+    outcome, _ = finished(skill, {"frame": frame(), "trace": trace})
+    assert outcome.reason.code == "cable.unexplained"
+
+
+@pytest.mark.parametrize(("knotted", "untangled"), [(0.04, True), (0.06, False), (0.5, False)])
+def test_untangled_is_claimed_only_above_the_confidence(knotted, untangled):
+    outcome, _ = finished(StateClaim(), {"knotted_probability": knotted, "confidence": 0.95})
+    assert outcome.outputs["claim"].untangled is untangled
+
+
+def test_no_end_and_no_light_have_reasons():
+    trace, _, _ = overhand()
+    outcome, _ = finished(DetectEndpoints(KnotNearTheEnd(trace)), {"frame": frame()})
+    assert outcome.reason.code == "endpoints.none"
+    outcome, _ = finished(ObserveWorkspace(DarkCamera()), {})
+    assert outcome.reason.code == "camera.dark"

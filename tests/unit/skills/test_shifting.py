@@ -1,0 +1,74 @@
+import numpy as np
+from cell_fakes import ArrivingArms, finished, frame, overhand
+
+from perception.cable.types import Endpoint
+from skills.cable.perturb_endpoint import PerturbEndpoint
+from skills.cable.pull_in import PullIn
+from skills.cable.pulling import towards_middle
+from skills.cable.shifting import HALF_SQUARE_M, Hold, room_map, roomiest_steps
+
+
+class BlindVision:
+    """Sees one vertical strand at column 600 and nothing else."""
+
+    def cable_pixels(self, image):
+        cable = np.zeros(image.shape, dtype=bool)
+        cable[:, 596:604] = True
+        return cable
+
+
+def end_at(x_px: float) -> Endpoint:
+    return Endpoint(np.array([x_px, 375.0]), np.array([-1.0, 0.0]), 0.9)
+
+
+def test_an_end_is_shifted_away_from_the_strand_beside_it_and_within_the_square():
+    arms = ArrivingArms()
+    skill = PerturbEndpoint(arms, BlindVision(), np.random.default_rng(3))
+    outcome, _ = finished(skill, {"frame": frame(), "endpoints": (end_at(560.0),)})
+    moves = [entry[1]["right"] for entry in arms.log if entry[0] == "move"]
+    step_m = np.subtract(moves[3], moves[2])
+    assert outcome.status == "SUCCESS"
+    assert np.abs(step_m[:2]).max() <= HALF_SQUARE_M + 1e-6
+    assert step_m[0] < 0.0  # the strand is on the right
+
+
+def test_an_end_out_of_reach_is_said_to_be():
+    skill = PerturbEndpoint(ArrivingArms(), BlindVision(), np.random.default_rng(3))
+    outcome, _ = finished(skill, {"frame": frame(), "endpoints": (end_at(990.0),)})
+    assert outcome.reason.code == "grasp.unreachable"
+
+
+def test_a_blocked_shift_is_tried_another_way():
+    arms = ArrivingArms()
+    skill = PerturbEndpoint(arms, BlindVision(), np.random.default_rng(3))
+    skill.start({"frame": frame(), "endpoints": (end_at(560.0),)})
+    while len([entry for entry in arms.log if entry[0] == "move"]) < 3:
+        skill.step()
+    arms.lines_blocked = 3
+    while (outcome := skill.step()).status == "RUNNING":
+        pass
+    assert outcome.status == "SUCCESS"
+
+
+def test_steps_with_more_room_come_first():
+    cable = np.zeros((751, 1001), dtype=bool)
+    cable[:, 600] = True
+    hold = Hold(np.array([500.0, 375.0]), np.array([1.0, 0.0]), np.array([580.0, 375.0]))
+    room = room_map(cable, hold)
+    steps = roomiest_steps(frame(), hold.leading_px, room, np.random.default_rng(0))
+    rooms = [room(hold.leading_px + 1e3 * step[:2] * [1, -1]) for step in steps]
+    assert rooms == sorted(rooms, reverse=True)
+
+
+def test_cable_is_pulled_from_the_end_of_its_trace_towards_the_middle():
+    arms = ArrivingArms()
+    trace, _, _ = overhand()
+    outcome, _ = finished(PullIn(arms), {"frame": frame(), "trace": trace})
+    moves = [entry[1]["right"] for entry in arms.log if entry[0] == "move"]
+    assert outcome.status == "SUCCESS"
+    assert np.linalg.norm(moves[3][:2]) < np.linalg.norm(moves[2][:2])
+
+
+def test_pulling_never_goes_beyond_the_middle():
+    assert np.allclose(towards_middle(np.array([0.1, 0.0, 0.01]), 0.5), [-0.1, 0.0, 0.0])
+    assert np.allclose(towards_middle(np.zeros(3), 0.5), 0.0)
