@@ -78,7 +78,8 @@ class Library:
         for folder in self._folders:
             if (folder / f"{name}.yaml").is_file():
                 return folder / f"{name}.yaml"
-        known = {file.stem for folder in self._folders for file in folder.glob("*.yaml")}
+        files = (file for folder in self._folders for file in folder.glob("*.yaml"))
+        known = {file.stem for file in files if _says(file, kind)}
         raise InputError(f"unknown {kind} {name!r}; {closest(name, sorted(known))}")
 
     def document(self, file: Path) -> Document | None:
@@ -165,3 +166,9 @@ def _misnamed(document: Document, source: Source) -> list[Fault]:
     line, column = source.value_mark((kind,))
     message = f"{kind} {document.name!r} is in a file named {stem!r}; expected the same name"
     return [Fault(source.file, line, column, "", message)]
+
+
+def _says(file: Path, kind: str) -> bool:
+    """Return whether a file looks like a document of a kind; for messages, so without parsing."""
+    lines = file.read_text(encoding="utf-8", errors="replace").splitlines()
+    return any(line.startswith(f"{kind}:") for line in lines)

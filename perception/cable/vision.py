@@ -20,7 +20,7 @@ from perception.cable.observation import observe
 from perception.cable.plug_ends import find_ends
 from perception.cable.tracers.analytic import AnalyticTracer
 from perception.cable.tracers.skeleton import SkeletonTracer
-from perception.cable.types import CableScene, Crossing, Endpoint, Knot, Points, Trace
+from perception.cable.types import CableScene, Crossing, Endpoint, Knot, Points, Trace, TraceEnd
 from perception.cable.wholeness import wholeness
 from perception.camera import GreyImage
 
@@ -104,15 +104,17 @@ class ClassicCableVision:
     ) -> Trace | None:
         """Follow one cable; see `Tracer.trace`.
 
-        A trace that leaves cable out is not believed, however sure the tracer was of each step.
+        A trace that claims to run from end to end and yet leaves cable out is not believed,
+        however sure the tracer was of each step.
         """
         seen = self._seen(image)
         trace, observation = self._tracer.trace(seen, start_px, endpoints), observe(seen)
         if trace is None or observation is None:
             return None
-        return replace(
-            trace, probability=trace.probability * wholeness(observation, trace.points_px)
-        )
+        if trace.end is not TraceEnd.ENDPOINT:
+            return trace
+        whole = wholeness(observation, trace.points_px)
+        return replace(trace, probability=trace.probability * whole)
 
     def explained_share(self, image: GreyImage, trace: Trace) -> float:
         """Return the share of cable pixels in view that a trace accounts for, in [0, 1]."""
