@@ -13,6 +13,9 @@ from perception.cable.mask import Bools, CableMask
 from perception.cable.types import Points
 from perception.camera import GreyImage
 
+# Beyond a free end less than this share of pixels shows cable.
+FREE_SHARE = 0.3
+
 
 @dataclass(frozen=True, slots=True)
 class PlugConfig:
@@ -72,7 +75,11 @@ def find_plugs(
         for label in sorted(range(1, count), key=lambda label: -areas[label])
         if smallest <= areas[label] <= greatest
     ]
-    return tuple(plug for plug in found if rise[plug.body].max() > config.peak * mask.contrast)
+    return tuple(
+        plug
+        for plug in found
+        if rise[plug.body].max() > config.peak * mask.contrast and _has_free_end(plug, mask)
+    )
 
 
 def _odd(size_px: float) -> int:
@@ -85,3 +92,17 @@ def _plug(body: Bools) -> Plug:
     _, axes = np.linalg.eigh(np.cov((places - centre_px).T))
     along = (places - centre_px) @ axes[:, 1]
     return Plug(centre_px, axes[:, 1], float(np.abs(along).max()), body)
+
+
+def _has_free_end(plug: Plug, mask: CableMask) -> bool:
+    """Say whether no cable goes on at one end of a body: where strands merge, it does at both."""
+    beyond_px = plug.half_length_px + np.linspace(0.7, 1.7, 5) * mask.width_px
+    aside_px = np.linspace(-0.6, 0.6, 5) * mask.width_px
+    across = np.array([-plug.axis[1], plug.axis[0]])
+    height, width = mask.cable.shape
+    for way in (-1.0, 1.0):
+        places = plug.centre_px + way * beyond_px[:, None, None] * plug.axis
+        x, y = np.rint(places + aside_px[:, None] * across).astype(int).reshape(-1, 2).T
+        if mask.cable[y.clip(0, height - 1), x.clip(0, width - 1)].mean() < FREE_SHARE:
+            return True
+    return False
