@@ -26,13 +26,16 @@ class PlugConfig:
         longest_widths: Bright things longer than this both ways are no connectors.
         contrast: Share of the cable's contrast at which a connector's body begins.
         peak: Share that it must reach.
+        sure_widths2: From this area times peak on, in squared widths, it is no place where
+            strands merge, even if cable goes on at both of its ends.
         areas_widths2: Least and greatest area of a body, in squared widths.
     """
 
     disc_widths: float = 1.5
     longest_widths: float = 9.0
     contrast: float = 0.6
-    peak: float = 1.0
+    peak: float = 0.9
+    sure_widths2: float = 12.0
     areas_widths2: tuple[float, float] = (5.0, 30.0)
 
 
@@ -78,8 +81,15 @@ def find_plugs(
     return tuple(
         plug
         for plug in found
-        if rise[plug.body].max() > config.peak * mask.contrast and _has_free_end(plug, mask)
+        if _is_plug(plug, mask, float(rise[plug.body].max()) / mask.contrast, config)
     )
+
+
+def _is_plug(plug: Plug, mask: CableMask, peak: float, config: PlugConfig) -> bool:
+    """Say whether a body is bright enough, and large and bright or free at one end."""
+    area_widths2 = int(plug.body.sum()) / mask.width_px**2
+    sure: bool = peak * area_widths2 > config.sure_widths2
+    return peak > config.peak and (sure or _has_free_end(plug, mask))
 
 
 def _odd(size_px: float) -> int:
