@@ -1,0 +1,152 @@
+"""How fast the cable's physics is, beside a PyBullet chain, and whether it keeps knots.
+
+Both worlds do the same: 3 m of cable with an overhand knot's centre line lie on a table, one
+end is held and pulled sideways at 0.25 m/s. Each pair of timings is taken in turn, so that a
+noisy machine slows both. Seconds are those of the process on its core: on a quiet machine wall
+seconds, and on a shared one what is left of them.
+"""
+
+import time
+from collections.abc import Sequence
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from benchmarks.harness import Row, median, share
+from perception.cable.topology import Knottedness, classify_curve
+from simulation.cable.configurations import starting_configuration
+from simulation.cable.rod import Rod
+
+Floats = NDArray[np.float64]
+PULL_M_S = 0.25
+STEP_S = 1.0 / 240.0
+CAPSULES = 250
+
+
+def run(quick: bool, seed: int) -> Sequence[Row]:
+    """Time both cables in turn, then pull knotted cables about and look at their knots."""
+    pairs, seconds, pulls = (3, 0.5, 4) if quick else (15, 1.0, 60)
+    nodes_m = starting_configuration("overhand", np.random.default_rng(seed))
+    _rod_cpu_s(nodes_m, 0.05)  # compiles
+    ours, theirs = [], []
+    for _ in range(pairs):
+        ours.append(_rod_cpu_s(nodes_m, seconds) / seconds)
+        theirs.append(_pybullet_cpu_s(nodes_m, seconds / 10.0) / (seconds / 10.0))
+    ratios = [chain / rod for rod, chain in zip(ours, theirs, strict=True)]
+    kept = [_keeps_its_knot(seed + number) for number in range(pulls)]
+    return [
+        median("realtime_factor_301", [1.0 / cpu for cpu in ours], "1", ">= 5"),
+        median("ratio_to_pybullet_chain", ratios, "1", ">= 15"),
+        median("pybullet_realtime_factor_250", [1.0 / cpu for cpu in theirs], "1"),
+        share("knots_kept_in_pulls", sum(kept), len(kept), "= 1"),
+    ]
+
+
+def _rod_cpu_s(nodes_m: Floats, seconds: float) -> float:
+    rod = Rod(nodes_m)
+    _hold(rod, nodes_m[5])
+    began_s = time.process_time()
+    _pull(rod, nodes_m[5], np.array([PULL_M_S, 0.0, 0.0]), seconds)
+    return time.process_time() - began_s
+
+
+def _hold(rod: Rod, point_m: Floats) -> None:
+    rod.move_hand("hand", _tool_at(point_m))
+    if not rod.close_hand("hand", "pinch", 0.05, 0.03, 0.02):
+        raise RuntimeError("the hand closed on nothing; the cable is not where it was laid")
+
+
+def _pull(rod: Rod, point_m: Floats, velocity_m_s: Floats, seconds: float) -> None:
+    for step in range(round(seconds / STEP_S)):
+        rod.move_hand("hand", _tool_at(point_m + velocity_m_s * (step + 1) * STEP_S))
+        rod.advance(STEP_S)
+
+
+def _tool_at(point_m: Floats) -> Floats:
+    pose = np.diag([1.0, -1.0, -1.0, 1.0])
+    pose[:3, 3] = point_m
+    return pose
+
+
+def _keeps_its_knot(seed: int) -> bool:
+    """Pull a random inner point of a knotted cable at full speed for 0.4 m; compare knots.
+
+    Pulling the inside of a knot may draw an end out of it, so a knot that ends with an end
+    inside it does not count as broken; the ends here are 0.7 m away or more.
+    """
+    rng = np.random.default_rng(seed)
+    nodes_m = starting_configuration(("overhand", "figure_8")[seed % 2], rng)
+    at = int(rng.integers(110, 190))
+    angle = rng.uniform(0.0, 2.0 * np.pi)
+    rod = Rod(nodes_m)
+    _hold(rod, nodes_m[at])
+    velocity_m_s = PULL_M_S * np.array([np.cos(angle), np.sin(angle), 0.1])
+    _pull(rod, nodes_m[at], velocity_m_s, 0.4 / PULL_M_S)
+    return classify_curve(rod.positions_m).state is Knottedness.KNOTTED
+
+
+def _pybullet_cpu_s(nodes_m: Floats, seconds: float) -> float:
+    """Time a chain of capsules on point-to-point constraints, pulled the same way."""
+    import pybullet
+    from pybullet_utils.bullet_client import BulletClient
+
+    client = BulletClient(pybullet.DIRECT)
+    client.setGravity(0.0, 0.0, -9.81)
+    client.setPhysicsEngineParameter(fixedTimeStep=STEP_S, numSolverIterations=50)
+    bodies = _chain(client, pybullet, nodes_m)
+    began_s = time.process_time()
+    for step in range(round(seconds / STEP_S)):
+        client.resetBasePositionAndOrientation(
+            bodies[0], nodes_m[0] + np.array([PULL_M_S * (step + 1) * STEP_S, 0.0, 0.0]), _UPRIGHT
+        )
+        client.stepSimulation()
+    cpu_s = time.process_time() - began_s
+    client.disconnect()
+    return cpu_s
+
+
+_UPRIGHT = (0.0, 0.0, 0.0, 1.0)
+
+
+def _chain(client: Any, pybullet: Any, nodes_m: Floats) -> list[int]:
+    plane = client.createCollisionShape(pybullet.GEOM_PLANE)
+    client.createMultiBody(0.0, plane)
+    arcs = np.linspace(0.0, len(nodes_m) - 1.0, CAPSULES + 1)
+    points = np.column_stack(
+        [np.interp(arcs, np.arange(len(nodes_m)), nodes_m[:, axis]) for axis in range(3)]
+    )
+    half_m = 3.0 / CAPSULES / 2.0
+    shape = client.createCollisionShape(
+        pybullet.GEOM_CAPSULE, radius=0.0033, height=2.0 * half_m - 0.0066
+    )
+    bodies = [
+        client.createMultiBody(
+            0.035 * 2.0 * half_m,
+            shape,
+            basePosition=(a + b) / 2.0,
+            baseOrientation=_turn_z_onto(b - a),
+        )
+        for a, b in pairwise(points)
+    ]
+    for one, other in pairwise(bodies):
+        client.setCollisionFilterPair(one, other, -1, -1, 0)
+        client.createConstraint(
+            one,
+            -1,
+            other,
+            -1,
+            pybullet.JOINT_POINT2POINT,
+            (0, 0, 0),
+            (0, 0, half_m),
+            (0, 0, -half_m),
+        )
+    return bodies
+
+
+def _turn_z_onto(direction: Floats) -> tuple[float, ...]:
+    """Return the quaternion (xyzw) that turns z onto a direction."""
+    x, y, z = direction / np.linalg.norm(direction)
+    quat_xyzw = np.array([-y, x, 0.0, 1.0 + z])
+    return tuple(quat_xyzw / np.linalg.norm(quat_xyzw))
