@@ -30,6 +30,9 @@ class MaskConfig:
         clutter_contrast: Share of the cable's contrast at which wide things are clutter.
         clutter_margin_px: Clutter is widened by this.
         shortest_widths: Pieces shorter than this many cable widths are dropped.
+        shortest_uneven_widths: The same for pieces that are not equally wide everywhere.
+        uneven_ratio: Such pieces reach this radius somewhere, as a share of their width.
+        widest_ratio: Pieces wider than this multiple of the cable are dropped.
         hole_widths2: Holes smaller than this many squared cable widths are filled.
     """
 
@@ -40,7 +43,10 @@ class MaskConfig:
     high_contrast: float = 0.55
     clutter_contrast: float = 0.4
     clutter_margin_px: int = 14
-    shortest_widths: float = 6.0
+    shortest_widths: float = 12.0
+    shortest_uneven_widths: float = 22.0
+    uneven_ratio: float = 0.8
+    widest_ratio: float = 1.7
     hole_widths2: float = 0.5
 
 
@@ -142,11 +148,13 @@ def _keep_cable(found: CableMask, config: MaskConfig) -> CableMask | None:
     if count < 2:
         return None
     labels, stats = (np.asarray(table, dtype=np.int32) for table in tables[:2])
-    areas = stats[1:, cv2.CC_STAT_AREA].astype(float)
-    widths = np.array([_piece_width(found.radius_px, labels, stats[k], k) for k in range(1, count)])
-    width_px = float(widths[np.argmax(areas / widths)])
-    lengths = areas / widths
-    keep = (lengths > config.shortest_widths * width_px) & (widths < 2.2 * width_px)
+    pieces = [_radii_of(found.radius_px, labels, stats[k], k) for k in range(1, count)]
+    widths = np.array([_piece_width(radii_px) for radii_px in pieces])
+    lengths = np.array([len(radii_px) for radii_px in pieces]) / widths
+    width_px = float(widths[np.argmax(lengths)])
+    uneven = np.array([radii_px.max() for radii_px in pieces]) > config.uneven_ratio * widths
+    shortest = np.where(uneven, config.shortest_uneven_widths, config.shortest_widths) * width_px
+    keep = (lengths > shortest) & (widths < config.widest_ratio * width_px)
     cable = np.concatenate([[False], keep])[labels]
     if not cable.any():
         return None
@@ -164,16 +172,20 @@ def _fill_holes(cable: Bools, largest_px2: float) -> Bools:
     return filled
 
 
-def _piece_width(
+def _radii_of(
     radius_px: Floats32, labels: NDArray[np.int32], stats: NDArray[np.int32], label: int
-) -> float:
+) -> Floats32:
+    """Return the distances to the border of one piece's pixels."""
+    x, y, width, height = stats[:4]
+    window = (slice(y, y + height), slice(x, x + width))
+    return radius_px[window][labels[window] == label]
+
+
+def _piece_width(radii_px: Floats32) -> float:
     """Return the width of one piece.
 
     In a strip of width w the distance to the border is w / 4 on average, and half a pixel
     more between centres of pixels. Connectors and crossings, the widest few, are left out.
     """
-    x, y, width, height = stats[:4]
-    window = (slice(y, y + height), slice(x, x + width))
-    radii = radius_px[window][labels[window] == label]
-    usual = radii[radii <= np.percentile(radii, 97)]
+    usual = radii_px[radii_px <= np.percentile(radii_px, 97)]
     return max(4.0 * (float(usual.mean()) - 0.5), 1.0)
