@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from perception.cable.belief import knotted_probability
+from perception.cable.bundles import separateness
 from perception.cable.classifiers.continuity import ContinuityClassifier
 from perception.cable.classifiers.edges import EdgeClassifier
 from perception.cable.coverage import explained_share
@@ -104,8 +105,8 @@ class ClassicCableVision:
     ) -> Trace | None:
         """Follow one cable; see `Tracer.trace`.
 
-        A trace that claims to run from end to end and yet leaves cable out is not believed,
-        however sure the tracer was of each step.
+        A trace that claims to run from end to end and yet leaves cable out, or lies upon itself
+        so long that crossings hide, is not believed, however sure the tracer was of each step.
         """
         seen = self._seen(image)
         trace, observation = self._tracer.trace(seen, start_px, endpoints), observe(seen)
@@ -113,8 +114,8 @@ class ClassicCableVision:
             return None
         if trace.end is not TraceEnd.ENDPOINT:
             return trace
-        whole = wholeness(observation, trace.points_px)
-        return replace(trace, probability=trace.probability * whole)
+        belief = wholeness(observation, trace.points_px) * separateness(trace.points_px)
+        return replace(trace, probability=trace.probability * belief)
 
     def explained_share(self, image: GreyImage, trace: Trace) -> float:
         """Return the share of cable pixels in view that a trace accounts for, in [0, 1]."""
