@@ -47,7 +47,7 @@ class AnalyticConfig:
     samples: int = 10
     merge_cosine: float = 0.97
     visited_px: float = 4.0
-    most_paths: int = 4000
+    most_paths: int = 2500
     beam: int = 24
     endpoint_px: float = 20.0
     border_px: float = 9.0
