@@ -25,7 +25,7 @@ PINCH: Colour = (255, 90, 170)
 KNOT: Colour = (255, 170, 60)
 UNSURE: Colour = (255, 80, 80)
 FONT = cv2.FONT_HERSHEY_SIMPLEX
-GAP_PX = 9.0
+GAP_PX = 15.0
 
 
 def draw_scene(image: GreyImage, scene: CableScene) -> ColourImage:
