@@ -1,67 +1,35 @@
 """Expressions over the blackboard, as in `size(knots) > 0 and trace.end == "edge"`.
 
-The language is the part of Python's expressions that `simpleeval` evaluates, made smaller:
-names, fields, items, comparisons, `and or not`, arithmetic and a few functions. A gate
-refuses everything else when the expression is parsed, so no method is ever called and no
-attribute that begins with an underscore is ever read.
+The language is a small part of Python's expressions: names, fields, items, comparisons,
+`and or not`, arithmetic and a few functions. A gate refuses everything else when the
+expression is parsed, so no method is ever called and no attribute that begins with an
+underscore is ever read; `executive.engine.evaluation` makes a function of what is left.
 """
 
 import ast
-from collections.abc import Callable, Mapping
+import warnings
 from dataclasses import dataclass
-from typing import Any, Final, Protocol
-
-import simpleeval
+from typing import Any, Final
 
 from executive.core.errors import InputError
 from executive.core.registry import closest
-
-CONSTANTS: Final[Mapping[str, object]] = {"true": True, "false": False, "none": None}
-FUNCTIONS: Final[Mapping[str, Callable[..., Any]]] = {
-    "abs": abs,
-    "max": max,
-    "min": min,
-    "round": round,
-    "size": len,
-}
-WRITTEN: Final = "written"
-"""Function that says whether a key has a value yet; its argument is not read."""
-
-_FORMS: Final = (
-    ast.Attribute,
-    ast.BinOp,
-    ast.BoolOp,
-    ast.Call,
-    ast.Compare,
-    ast.Constant,
-    ast.IfExp,
-    ast.List,
-    ast.Name,
-    ast.Subscript,
-    ast.Tuple,
-    ast.UnaryOp,
+from executive.engine.evaluation import (
+    CONSTANTS,
+    FORMS,
+    FUNCTIONS,
+    OPERATORS,
+    WRITTEN,
+    Evaluate,
+    NoValueError,
+    Scope,
+    compiled,
 )
-_OPERATORS: Final[Mapping[type, Any]] = {
-    kind: simpleeval.DEFAULT_OPERATORS[kind]
-    for kind in (
-        *(ast.Add, ast.Sub, ast.Mult, ast.Div, ast.Mod, ast.FloorDiv, ast.USub, ast.UAdd),
-        *(ast.Eq, ast.NotEq, ast.Gt, ast.Lt, ast.GtE, ast.LtE, ast.Not),
-        *(ast.In, ast.NotIn, ast.Is, ast.IsNot),
-    )
-}
-_WORDS: Final = (ast.And, ast.Or, ast.Load)
 
+MAX_NESTING: Final = 60
+"""How deep an expression may be nested; a tick evaluates it in nested calls."""
 
-class Scope(Protocol):
-    """Where an expression finds its names."""
-
-    def __getitem__(self, name: str, /) -> object:
-        """Return the value of a name; KeyError where it has none yet."""
-        ...
-
-    def __contains__(self, name: object, /) -> bool:
-        """Return whether a name has a value."""
-        ...
+_ALLOWED: Final = (*FORMS, *OPERATORS, ast.And, ast.Or, ast.Load)
+_FRAMES: Final = ("ag_frame", "cr_frame", "gi_frame", "tb_frame")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -73,41 +41,29 @@ class Expression:
         tree: Its syntax tree.
         reads: Names that it needs.
         asks: Names that it only asks about, with `written(name)`.
+        function: What it comes to, as a function of the names.
     """
 
     text: str
     tree: ast.expr
     reads: frozenset[str]
     asks: frozenset[str]
+    function: Evaluate
 
-    def evaluate(self, scope: Scope) -> object:
+    def evaluate(self, scope: Scope) -> Any:
         """Return its value.
 
         Raises:
             InputError: A name has no value yet, or an operation fails.
         """
-        functions = {**FUNCTIONS, WRITTEN: scope.__contains__}
-        evaluator = simpleeval.EvalWithCompoundTypes(_OPERATORS, functions, _Names(scope))
         try:
-            return evaluator.eval(self.text, previously_parsed=self.tree)
-        except simpleeval.NameNotDefined as error:
+            return self.function(scope)
+        except NoValueError as error:
             raise InputError(
-                f"{self.text!r}: {error.name!r} has no value: nothing has written it yet"
+                f"{self.text!r}: {error.args[0]!r} has no value: nothing has written it yet"
             ) from None
-        except simpleeval.InvalidExpression as error:
-            raise InputError(f"{self.text!r}: {error}") from error
-        except (ArithmeticError, LookupError, TypeError, ValueError) as error:
+        except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
             raise InputError(f"{self.text!r}: {type(error).__name__}: {error}") from error
-
-
-class _Names:
-    """The constants, and then the names of a scope."""
-
-    def __init__(self, scope: Scope) -> None:
-        self._scope = scope
-
-    def __getitem__(self, name: str) -> object:
-        return CONSTANTS[name] if name in CONSTANTS else self._scope[name]
 
 
 def parse_expression(text: str) -> Expression:
@@ -117,13 +73,15 @@ def parse_expression(text: str) -> Expression:
         InputError: It is no expression, or uses what the language does not have.
     """
     try:
-        tree = ast.parse(text.strip(), mode="eval").body
-    except (SyntaxError, ValueError, MemoryError, RecursionError) as error:
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")  # what Python only warns of is a mistake here
+            tree = ast.parse(text.strip(), mode="eval").body
+    except (SyntaxError, ValueError, MemoryError, RecursionError, Warning) as error:
         what = getattr(error, "msg", None) or error
         raise InputError(f"{text!r} is not an expression: {what}") from None
     gate = _Gate(text)
     tree = gate.visit(tree)
-    return Expression(text, tree, frozenset(gate.reads), frozenset(gate.asks))
+    return Expression(text, tree, frozenset(gate.reads), frozenset(gate.asks), compiled(tree))
 
 
 class _Gate(ast.NodeTransformer):
@@ -131,14 +89,21 @@ class _Gate(ast.NodeTransformer):
 
     def __init__(self, text: str) -> None:
         self._text = text
+        self._level = 0
         self.reads: set[str] = set()
         self.asks: set[str] = set()
 
     def visit(self, node: ast.AST) -> Any:
-        allowed = (*_FORMS, *_OPERATORS, *_WORDS)
-        if not isinstance(node, allowed):
+        if self._level > MAX_NESTING:
+            raise InputError(
+                f"{self._text[:60]!r}...: nested more than {MAX_NESTING} deep; try keys for parts"
+            )
+        if not isinstance(node, _ALLOWED):
             raise InputError(f"{self._text!r}: {_shown(node)} is not part of the language")
-        return super().visit(node)
+        self._level += 1
+        visited = super().visit(node)
+        self._level -= 1
+        return visited
 
     def visit_Name(self, node: ast.Name) -> ast.expr:
         if node.id not in CONSTANTS:
@@ -151,7 +116,7 @@ class _Gate(ast.NodeTransformer):
         return node
 
     def visit_Attribute(self, node: ast.Attribute) -> ast.AST:
-        if node.attr.startswith("_"):
+        if node.attr.startswith(("_", "func_")) or node.attr in _FRAMES:
             raise InputError(f"{self._text!r}: field {node.attr!r} is private")
         return self.generic_visit(node)
 

@@ -9,7 +9,8 @@ from typing import Any, Final, Union
 
 from executive.core.errors import InputError
 from executive.core.registry import closest
-from executive.engine.expression import CONSTANTS, WRITTEN, Expression
+from executive.engine.evaluation import CONSTANTS, WRITTEN
+from executive.engine.expression import Expression
 from executive.engine.porttypes import (
     accepts,
     is_sequence,
