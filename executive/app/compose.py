@@ -56,7 +56,7 @@ def open_cell(document: CellDocument, scenario: Mapping[str, object], seed: int)
     Raises:
         InputError: Unknown world, or a configuration or scenario that the world refuses.
     """
-    worlds = {"table_cell": _open_table_cell}
+    worlds = {"table_cell": _open_table_cell, "dry": _open_dry_cell}
     if document.world not in worlds:
         raise InputError(f"unknown world {document.world!r}; {closest(document.world, [*worlds])}")
     return worlds[document.world](document.config, scenario, seed)
@@ -75,6 +75,16 @@ def _open_table_cell(
         "rng": np.random.default_rng(seed),
     }
     return _EquippedCell(world, services)
+
+
+def _open_dry_cell(
+    config: Mapping[str, object],
+    scenario: Mapping[str, object],
+    seed: int,  # noqa: ARG001 - every world takes one; nothing is random here
+) -> Cell:
+    from executive.app.dry_cell import DryCell
+
+    return DryCell(config, scenario)
 
 
 def cable_vision(hidden_rows: int = 0) -> CableVision:

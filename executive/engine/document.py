@@ -26,6 +26,9 @@ from typing_extensions import TypeAliasType
 Name = Annotated[str, StringConstraints(strict=True, pattern=r"^[a-z][a-z0-9_]*$")]
 Text = Annotated[str, Field(strict=True)]
 Reference = Annotated[str, StringConstraints(strict=True, pattern=r"^\$[a-z][a-z0-9_]*$")]
+ReasonCode = Annotated[
+    str, StringConstraints(strict=True, pattern=r"^[a-z][a-z0-9_]*(\.[a-z][a-z0-9_]*)*$")
+]
 Count = Annotated[int, Field(strict=True, ge=1)]
 Seconds = Annotated[float, Field(strict=True, gt=0.0, allow_inf_nan=False)]
 Delay = Annotated[float, Field(strict=True, ge=0.0, allow_inf_nan=False)]
@@ -355,6 +358,7 @@ class TreeDocument(Model):
     format: Literal[1]
     tree: Name = Field(description="Its name, which is also the name of its file.")
     about: Text = ""
+    uses: tuple[Name, ...] = Field((), description="Stubs that it may run as skills, by name.")
     in_: dict[Name, InPort] = Field(default_factory=dict, alias="in")
     out: dict[Name, OutPort] = Field(default_factory=dict)
     root: Node
@@ -372,6 +376,7 @@ class MissionDocument(Model):
     mission: Name = Field(description="Its name, which is also the name of its file.")
     about: Text = ""
     cell: Name = Field(description="Name of the cell that it runs on.")
+    uses: tuple[Name, ...] = Field((), description="Stubs that it may run as skills, by name.")
     scenario: dict[str, Any] = Field(
         default_factory=dict, description="What is set up in the cell; its world checks it."
     )
@@ -404,9 +409,49 @@ class CellDocument(Model):
         return self.cell
 
 
-Document = TreeDocument | MissionDocument | CellDocument
+class StubOutcome(Model):
+    """What a stub answers in one activation."""
+
+    ticks: Count = Field(1, description="Tick in which it answers; it runs until then.")
+    outcome: Literal["success", "failure"]
+    out: dict[Name, Any] = Field(default_factory=dict, description="Its outputs on a success.")
+    reason: ReasonCode | None = Field(None, description="Code of a failure.")
+
+
+class StubSkill(Model):
+    """A skill that is declared and scripted, not written."""
+
+    about: Text = ""
+    acts: bool = Field(False, strict=True, description="Whether the real one moves something.")
+    in_: dict[Name, InPort] = Field(default_factory=dict, alias="in")
+    out: dict[Name, OutPort] = Field(default_factory=dict)
+    stands_for: Text = Field("", description="Name of the node in the language it came from.")
+    outcomes: tuple[StubOutcome, ...] = Field(
+        (), description="One an activation of a node; succeeds at once without any."
+    )
+    after: Literal["last", "first"] = Field(
+        "last", description="After the last outcome: the last again, or from the first on."
+    )
+
+
+class StubsDocument(Model):
+    """Skills that are declared and scripted, for trees whose skills are not at hand."""
+
+    format: Literal[1]
+    stubs: Name = Field(description="Its name, which is also the name of its file.")
+    about: Text = ""
+    skills: Annotated[dict[Name, StubSkill], Field(min_length=1)]
+
+    @property
+    def name(self) -> str:
+        """Name of the stubs."""
+        return self.stubs
+
+
+Document = TreeDocument | MissionDocument | CellDocument | StubsDocument
 DOCUMENTS: Mapping[str, type[Document]] = {
     "tree": TreeDocument,
     "mission": MissionDocument,
     "cell": CellDocument,
+    "stubs": StubsDocument,
 }

@@ -1,32 +1,35 @@
 """Finds documents by name and reads each file once.
 
-A tree, mission or cell NAME is the file `NAME.yaml` in one of the folders `trees`,
-`subtrees`, `missions` or `cells`, or in the folder of the document that names it. Folders
-are searched in a fixed order: next to the file that was asked for, the search paths that
-were given, and what ships with the package; the first file wins.
+A tree, mission, cell or set of stubs NAME is the file `NAME.yaml` in one of the folders
+`trees`, `subtrees`, `missions`, `cells` or `stubs`, or in the folder of the document that
+names it. Folders are searched in a fixed order: next to the file that was asked for, the
+search paths that were given, and what ships with the package; the first file wins.
 """
 
 import importlib.util
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from executive.core.errors import Fault, InputError
 from executive.core.registry import Registry, closest
-from executive.core.skill import REQUIRED, Port
+from executive.core.skill import REQUIRED, Port, Skill
 from executive.engine.document import (
+    DOCUMENTS,
     Document,
     InPort,
     MissionDocument,
     OutPort,
+    StubsDocument,
     TreeDocument,
 )
 from executive.engine.outline import TreeSpec, outline
 from executive.engine.porttypes import fit, parse_type
 from executive.engine.sources import Source, read_source
+from executive.engine.stubs import stub_skills
 from executive.engine.validation import validate
 
-FOLDERS = ("subtrees", "missions", "cells")
+FOLDERS = ("subtrees", "missions", "cells", "stubs")
 
 
 def packaged_trees() -> Path:
@@ -58,6 +61,7 @@ class Library:
         self._types = types
         self._folders = tuple(folders)
         self._read: dict[Path, tuple[Source, Document | None, TreeSpec | None]] = {}
+        self._stubs: dict[str, Mapping[str, type[Skill]]] = {}
         self.faults: list[Fault] = []
 
     @property
@@ -70,7 +74,7 @@ class Library:
 
         Args:
             name: Its name.
-            kind: `tree`, `mission` or `cell`, for the message.
+            kind: `tree`, `mission`, `cell` or `stubs`, for the message.
 
         Raises:
             InputError: There is none.
@@ -98,6 +102,17 @@ class Library:
         """
         return self._entry(file)[2]
 
+    def stubs(self, file: Path) -> Mapping[str, type[Skill]]:
+        """Return the scripted skills that a file declares, none where it has faults.
+
+        Raises:
+            InputError: The file cannot be read, or holds something else.
+        """
+        source, document, _ = self._entry(file)
+        if document is not None and not isinstance(document, StubsDocument):
+            raise InputError(f"{document.name!r} holds no stubs")
+        return self._stubs.get(source.file, {})
+
     def _entry(self, file: Path) -> tuple[Source, Document | None, TreeSpec | None]:
         key = file.resolve()
         if key not in self._read:
@@ -108,6 +123,9 @@ class Library:
                 faults = _misnamed(document, source)
             if isinstance(document, (TreeDocument, MissionDocument)):
                 tree, more = self._tree(document, source)
+                faults += more
+            if isinstance(document, StubsDocument):
+                self._stubs[source.file], more = stub_skills(document, source, self._types)
                 faults += more
             self.faults += faults
             self._read[key] = source, document, tree
@@ -157,12 +175,17 @@ def _text(file: Path) -> str:
         raise InputError(f"{file}: is not UTF-8 text: {error.reason}") from None
 
 
+def kind_of_document(document: Document) -> str:
+    """Return the key by which a document says what it is."""
+    return next(kind for kind, model in DOCUMENTS.items() if isinstance(document, model))
+
+
 def _misnamed(document: Document, source: Source) -> list[Fault]:
     """Say so when a file does not have the name of what is in it: nobody would find it."""
     stem = Path(source.file).stem
     if stem == document.name:
         return []
-    kind = next(iter(set(type(document).model_fields) & {"tree", "mission"}), "cell")
+    kind = kind_of_document(document)
     line, column = source.value_mark((kind,))
     message = f"{kind} {document.name!r} is in a file named {stem!r}; expected the same name"
     return [Fault(source.file, line, column, "", message)]

@@ -9,10 +9,16 @@ from executive.core.errors import DocumentError, Fault, InputError
 from executive.core.registry import Registry
 from executive.core.skill import Skill
 from executive.engine.checks import check_tree
-from executive.engine.document import CellDocument, MissionDocument, SubtreeNode
-from executive.engine.library import Library, search_folders
+from executive.engine.document import (
+    CellDocument,
+    MissionDocument,
+    StubsDocument,
+    SubtreeNode,
+)
+from executive.engine.library import Library, kind_of_document, search_folders
 from executive.engine.outline import NodeSpec, TreeSpec
 from executive.engine.sources import Source
+from executive.engine.stubs import Skillset
 
 MAX_DEPTH = 200
 """How deep a tree may be: a tick goes through all of it in nested calls."""
@@ -25,7 +31,7 @@ class Program:
     Attributes:
         tree: The tree or mission itself.
         subtrees: The trees that it uses, by name.
-        skills: The skills that they were checked against.
+        skills: The skills that they were checked against, the stubs that they use among them.
         sources: Every file that was read, the one that was asked for first.
     """
 
@@ -59,7 +65,7 @@ class Checked:
 
     Attributes:
         file: Path as the user gave it.
-        kind: `tree`, `mission` or `cell`; empty where that cannot be told.
+        kind: `tree`, `mission`, `cell` or `stubs`; empty where that cannot be told.
         name: Name of the document, empty where it has none.
         nodes: Number of nodes with those of its subtrees.
     """
@@ -96,7 +102,7 @@ def load_mission(
     program, cell = loading.program(), loading.cell()
     if loading.faults or program is None or cell is None or document is None:
         raise DocumentError(loading.faults)
-    return Mission(program.tree, program.subtrees, skills, loading.library.sources, document, cell)
+    return Mission(program.tree, program.subtrees, program.skills, program.sources, document, cell)
 
 
 def load_program(
@@ -119,8 +125,10 @@ def load_program(
         InputError: No such tree, or a file that is none.
     """
     loading = _Loading(path_or_name, "tree", skills, types, search_paths)
-    if isinstance(loading.library.document(loading.file), CellDocument):
-        raise InputError(f"{loading.file}: expected a tree or a mission, got a cell")
+    document = loading.library.document(loading.file)
+    if isinstance(document, CellDocument | StubsDocument):
+        kind = kind_of_document(document)
+        raise InputError(f"{loading.file}: expected a tree or a mission, got a {kind} document")
     program = loading.program()
     if loading.faults or program is None:
         raise DocumentError(loading.faults)
@@ -164,7 +172,7 @@ class _Loading:
         beside = Path(path_or_name)
         is_path = isinstance(path_or_name, Path) or beside.suffix != "" or beside.is_file()
         folders = search_folders(beside if is_path else None, search_paths)
-        self._skills = skills
+        self._skills = Skillset(skills)
         self.library = Library(types, folders)
         self.file = beside if is_path else self.library.find(str(path_or_name), kind)
         self._subtrees: dict[str, TreeSpec | None] = {}
@@ -183,9 +191,7 @@ class _Loading:
         program = self.program()
         if isinstance(document, MissionDocument):
             self.cell()
-            kind = "mission"
-        else:
-            kind = "cell" if isinstance(document, CellDocument) else "tree"
+        kind = kind_of_document(document)
         count = self._count(program.tree) if program and not self.faults else 0
         return Checked(str(self.file), kind, document.name, count)
 
@@ -197,13 +203,15 @@ class _Loading:
         self._reach(tree, (tree.name,))
         for spec in (tree, *self._subtrees.values()):
             if spec is not None:
-                self._faults += check_tree(spec, self._skills, self._subtrees)
+                skills = self._skills.of(spec, self.library, self._faults)
+                self._faults += check_tree(spec, skills, self._subtrees)
         if not self.faults and (depth := self._depth(tree.root)) > MAX_DEPTH:
             self._faults.append(
                 tree.root.fault(f"{depth} nodes deep; expected {MAX_DEPTH} at most")
             )
         subtrees = {name: spec for name, spec in self._subtrees.items() if spec is not None}
-        return Program(tree, MappingProxyType(subtrees), self._skills, self.library.sources)
+        skills = self._skills.used
+        return Program(tree, MappingProxyType(subtrees), skills, self.library.sources)
 
     def cell(self) -> CellDocument | None:
         """Return the cell of the mission in the file, None where there are faults."""
