@@ -17,6 +17,7 @@ KEYFRAME_EVERY = 256
 MISSION_TOPIC = "/mission"
 TICKS_TOPIC = "/ticks"
 IMAGES_TOPIC = "/images"
+ARRAYS_TOPIC = "/arrays"
 RESULT_TOPIC = "/result"
 
 
@@ -88,6 +89,15 @@ class TickMessage(_Message):
     writes: tuple[Write, ...] = ()
     faults: tuple[NodeFault, ...] = ()
     keyframe: Keyframe | None = None
+
+
+class ArrayMessage(_Message):
+    """A large array; `data` is its bytes, row by row, little endian, zstd, then base64."""
+
+    dtype: str
+    shape: tuple[int, ...]
+    compression: Literal["zstd"] = "zstd"
+    data: str
 
 
 class ActionReport(_Message):

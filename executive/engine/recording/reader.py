@@ -8,16 +8,20 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO
 
+import numpy as np
 from mcap.exceptions import McapError
 from mcap.reader import NonSeekingReader, SeekingReader
 from mcap.records import Channel, Message, Schema
+from numpy.typing import NDArray
 from pydantic import ValidationError
 from zstandard import ZstdError
 
 from executive.core.errors import RecordingError
 from executive.core.outcome import Reason
 from executive.core.world import StreamMessage
+from executive.engine.recording.large import array_of, image_of
 from executive.engine.recording.messages import (
+    ARRAYS_TOPIC,
     IMAGES_TOPIC,
     KEYFRAME_EVERY,
     MISSION_TOPIC,
@@ -191,10 +195,33 @@ class Recording:
             png = base64.b64decode(json.loads(message.data)["data"])
             yield RecordedImage(message.sequence, message.log_time / 1e9, png)
 
+    def image(self, number: int) -> NDArray[np.uint8]:
+        """Return one image, shape (H, W) or (H, W, 3).
+
+        Raises:
+            RecordingError: There is no such image.
+        """
+        data = self._large(IMAGES_TOPIC, number)
+        return image_of(base64.b64decode(json.loads(data)["data"]))
+
+    def array(self, number: int) -> NDArray[np.generic]:
+        """Return one large array.
+
+        Raises:
+            RecordingError: There is no such array.
+        """
+        return array_of(self._large(ARRAYS_TOPIC, number))
+
+    def _large(self, topic: str, number: int) -> bytes:
+        for _, _, message in _Reading(self.path).messages((topic,)):
+            if message.sequence == number:
+                return message.data
+        raise RecordingError(f"{self.path}: {topic} has no message {number}")
+
     def streams(self) -> Iterator[StreamMessage]:
         """Return what the cell streamed, in the order of time."""
         for schema, channel, message in _Reading(self.path).messages(None):
-            if channel.topic not in (*_OWN_TOPICS, IMAGES_TOPIC):
+            if channel.topic not in (*_OWN_TOPICS, IMAGES_TOPIC, ARRAYS_TOPIC):
                 name = "" if schema is None else schema.name
                 yield StreamMessage(channel.topic, name, message.log_time / 1e9, message.data)
 

@@ -1,8 +1,9 @@
 """Turns values of the blackboard into JSON that no later change can touch.
 
 Plain JSON stays what it is; everything else becomes an object whose `$type` says what it
-was. Images are stored once on their own channel and referred to; other large arrays are
-named by shape and hash. docs/recording.md lists the forms.
+was. Images and large arrays are stored once on their own channels and referred to by number;
+what is not stored is named by a hash. docs/recording.md lists the forms, and
+`executive.engine.recording.decoding` reads them back.
 """
 
 import base64
@@ -17,7 +18,11 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import JsonValue
 
-StoreImage = Callable[[NDArray[np.uint8]], int]
+StoreImage = Callable[[NDArray[np.uint8]], int | None]
+"""Stores an image and answers with its number, None where it is left out."""
+
+StoreArray = Callable[[NDArray[np.generic]], int | None]
+"""Stores a large array and answers with its number, None where it is left out."""
 
 INLINE_ELEMENTS = 8192
 """Arrays with more elements than this are not written out."""
@@ -26,11 +31,11 @@ _MEMORY_ADDRESS = re.compile(r" at 0x[0-9a-f]+")
 
 
 class ValueEncoder:
-    """Encodes values; images go through `store_image`, which answers with their number."""
+    """Encodes values; images and large arrays go where they are stored."""
 
-    def __init__(self, store_image: StoreImage) -> None:
-        """Remember where images go."""
-        self._store_image = store_image
+    def __init__(self, store_image: StoreImage, store_array: StoreArray = lambda _: None) -> None:
+        """Remember where images and large arrays go."""
+        self._store_image, self._store_array = store_image, store_array
 
     def encode(self, value: object) -> JsonValue:
         """Return the JSON form of a value."""
@@ -75,15 +80,24 @@ class ValueEncoder:
     def _array(self, array: NDArray[np.generic]) -> JsonValue:
         if array.dtype == np.uint8 and _is_image(array.shape):
             number = self._store_image(np.asarray(array, np.uint8))
-            return {"$type": "image", "image": number, "shape": list(array.shape)}
+            shape: list[JsonValue] = list(array.shape)
+            return {"$type": "image", **_reference("image", number, array), "shape": shape}
         form: dict[str, JsonValue] = {
             "$type": "ndarray",
             "dtype": array.dtype.name,
             "shape": list(array.shape),
         }
-        if array.size > INLINE_ELEMENTS or array.dtype.kind not in "biuf":
+        if array.dtype.kind not in "biuf":
             return {**form, "hash": array_hash(array)}
+        if array.size > INLINE_ELEMENTS:
+            return {**form, **_reference("array", self._store_array(array), array)}
         return {**form, "values": _numbers(array.tolist())}
+
+
+def _reference(
+    channel: str, number: int | None, array: NDArray[np.generic]
+) -> dict[str, JsonValue]:
+    return {"hash": array_hash(array)} if number is None else {channel: number}
 
 
 def array_hash(array: NDArray[np.generic]) -> str:

@@ -5,8 +5,6 @@ process that is killed loses at most the ticks of the last `FLUSH_S` seconds in 
 was decided: no leaf ended, no key was written, no node was halted or raised.
 """
 
-import base64
-import io
 import json
 import time
 from collections.abc import Iterator, Sequence
@@ -16,18 +14,15 @@ from pathlib import Path
 from types import TracebackType
 from typing import Self
 
-import numpy as np
 from mcap.writer import CompressionType, Writer
-from numpy.typing import NDArray
 from pydantic import BaseModel
 
 from executive.core.errors import RecordingError
 from executive.core.outcome import Reason
 from executive.core.world import StreamMessage
 from executive.engine.blackboard import Write
+from executive.engine.recording.large import LargeValues
 from executive.engine.recording.messages import (
-    COMPRESSED_IMAGE_SCHEMA,
-    IMAGES_TOPIC,
     KEYFRAME_EVERY,
     MISSION_TOPIC,
     RESULT_TOPIC,
@@ -37,11 +32,13 @@ from executive.engine.recording.messages import (
     ResultMessage,
     TickMessage,
 )
-from executive.engine.recording.values import ValueEncoder, array_hash
+from executive.engine.recording.values import ValueEncoder
 from executive.engine.ticks import NodeOutcome, NodeStatus, Tick
 
 FLUSH_S = 0.5
 CHUNK_BYTES = 256 * 1024
+IMAGES_PER_S = 30.0
+"""Of each key, new images and large arrays go in at most this often [1/s]."""
 
 
 class RecordingWriter:
@@ -51,18 +48,22 @@ class RecordingWriter:
         RecordingError: From any method, when the file cannot be written.
     """
 
-    def __init__(self, path: Path, header: MissionHeader) -> None:
+    def __init__(
+        self, path: Path, header: MissionHeader, *, images_per_s: float = IMAGES_PER_S
+    ) -> None:
         """Create the file and write what is known before the first tick.
 
         Args:
             path: The file; its folder is made, and a file that is there is replaced.
             header: What is going to run.
+            images_per_s: How often new images and large arrays of one key go in [1/s]; the
+                others are named by hash.
         """
         self.path = path
         self._channels: dict[tuple[str, str], int] = {}
         self._schemas: dict[str, int] = {}
-        self._images: dict[str, int] = {}
-        self._encoder = ValueEncoder(self._store_image)
+        self._large = LargeValues(self._write_large, images_per_s)
+        self._encoder = ValueEncoder(self._large.image, self._large.array)
         self._statuses = [NodeStatus.INVALID] * len(header.nodes)
         self._written: dict[str, int] = {}
         self._ended: dict[int, int] = {}
@@ -145,33 +146,21 @@ class RecordingWriter:
         reason = outcome.reason
         if reason is None:
             return outcome
+        self._large.begin(reason.code, self._time_s)
         data = {name: self._encoder.encode(value) for name, value in reason.data.items()}
         return replace(outcome, reason=Reason(reason.code, reason.text, data))
 
     def _encoded_write(self, write: Write) -> Write:
+        self._large.begin(write.key, self._time_s)
         return replace(write, value=self._encoder.encode(write.value))
 
-    def _store_image(self, image: NDArray[np.uint8]) -> int:
-        """Write an image unless it is there already; return its number."""
-        key = array_hash(image)
-        if key not in self._images:
-            self._images[key] = len(self._images)
-            # In a chunk of its own, so that a reader of ticks need not unpack it.
-            self._flush()
-            self._write_image(self._images[key], image)
-            self._flush()
-        return self._images[key]
-
-    def _write_image(self, number: int, image: NDArray[np.uint8]) -> None:
-        seconds, nanoseconds = divmod(_nanoseconds(self._time_s), 10**9)
-        message = {
-            "timestamp": {"sec": seconds, "nsec": nanoseconds},
-            "frame_id": "",
-            "format": "png",
-            "data": base64.b64encode(_png(image)).decode(),
-        }
-        channel = self._channel(IMAGES_TOPIC, "foxglove.CompressedImage", COMPRESSED_IMAGE_SCHEMA)
-        self._add(channel, json.dumps(message).encode(), self._time_s, number)
+    def _write_large(
+        self, topic: str, schema: str, definition: object, data: bytes, number: int
+    ) -> None:
+        # In a chunk of its own, so that a reader of ticks need not unpack it.
+        self._flush()
+        self._add(self._channel(topic, schema, definition), data, self._time_s, number)
+        self._flush()
 
     def _write_model(self, topic: str, message: BaseModel, sequence: int = 0) -> None:
         name = type(message).__name__
@@ -211,12 +200,3 @@ class RecordingWriter:
 
 def _nanoseconds(time_s: float) -> int:
     return round(time_s * 1e9)
-
-
-def _png(image: NDArray[np.uint8]) -> bytes:
-    from PIL import Image
-
-    buffer = io.BytesIO()
-    # Camera noise does not compress: more effort costs time and gains nothing.
-    Image.fromarray(image).save(buffer, "PNG", compress_level=1)
-    return buffer.getvalue()
