@@ -1,8 +1,9 @@
 """Types of ports: their names in YAML, which fits which, and literals made to fit.
 
-Names are `bool int float str any`, those that the application registers, `list[T]` and
-`T | None`. A `list[T]` is any ordered collection: a skill may ask for a tuple or give one.
-An int fits where a float is asked for; a bool is no number.
+Names are `bool int float str any`, those that the application registers, `list[T]`,
+`dict[str, T]`, `tuple[A, B]`, `"word" | "other"` and `T | None`. A `list[T]` is any ordered
+collection: a skill may ask for a tuple or give one. An int fits where a float is asked for; a
+bool is no number.
 """
 
 import ast
@@ -52,12 +53,31 @@ def _type_of(tree: ast.expr, text: str, registered: Registry[type]) -> Any:
             return _named(name, registered)
         case ast.Constant(value=None):
             return type(None)
+        case ast.Constant(value=str(word)):
+            return Literal[word]
+        case ast.Subscript(value=ast.Name(id="dict"), slice=ast.Tuple(elts=[key, item])):
+            kinds = [_type_of(part, text, registered) for part in (key, item)]
+            return collections.abc.Mapping[*kinds]  # type: ignore[misc, valid-type]  # at run time
+        case ast.Subscript(value=ast.Name(id="tuple"), slice=ast.Tuple(elts=items)) if items:
+            return tuple[tuple(_type_of(item, text, registered) for item in items)]  # type: ignore[misc]  # at run time
         case ast.Subscript(value=ast.Name(id="list"), slice=item):
             return Sequence[_type_of(item, text, registered)]  # type: ignore[misc]  # at run time
         case ast.BinOp(left=left, op=ast.BitOr(), right=right):
-            members = _type_of(left, text, registered), _type_of(right, text, registered)
-            return Union[members]  # noqa: UP007 - the members are values here
+            return _either(_type_of(left, text, registered), _type_of(right, text, registered))
     raise InputError(_no_type(text))
+
+
+def _either(*kinds: Any) -> Any:
+    """Return the union of some types, with one literal type for all words in it."""
+    members = [member for kind in kinds for member in union_members(kind) or (kind,)]
+    words = [word for one in members if _is_literal(one) for word in typing.get_args(one)]
+    others = [one for one in members if not _is_literal(one)]
+    literal = [Literal[tuple(words)]] if words else []
+    return Union[(*literal, *others)]
+
+
+def _is_literal(kind: Any) -> bool:
+    return typing.get_origin(kind) is Literal
 
 
 def _named(name: str, registered: Registry[type]) -> Any:
@@ -65,12 +85,15 @@ def _named(name: str, registered: Registry[type]) -> Any:
         return registered.get(name)
     if name in _BUILT_IN:
         return _BUILT_IN[name]
-    known = [*_BUILT_IN, *registered, "list[...]"]
+    known = [*_BUILT_IN, *registered, "list[...]", "dict[...]", "tuple[...]"]
     raise InputError(f"unknown type {name!r}; {closest(name, known)}")
 
 
 def _no_type(text: str) -> str:
-    return f"{text!r} is not a type; expected a name, list[NAME] or NAME | None"
+    return (
+        f"{text!r} is not a type; expected a name, list[NAME], dict[str, NAME], "
+        "tuple[NAME, NAME] or NAME | None"
+    )
 
 
 def type_name(kind: Any) -> str:
@@ -83,8 +106,12 @@ def type_name(kind: Any) -> str:
     members = union_members(kind)
     if members:
         return " | ".join(type_name(member) for member in members)
-    if typing.get_origin(kind) is Literal:
+    if _is_literal(kind):
         return " | ".join(repr(value) for value in typing.get_args(kind))
+    if (items := _fixed_length(kind)) is not None:
+        return f"tuple[{', '.join(type_name(item) for item in items)}]"
+    if is_mapping(kind):
+        return f"dict[{', '.join(type_name(part) for part in mapping_types(kind))}]"
     if is_sequence(kind):
         return f"list[{type_name(item_type(kind))}]"
     return str(getattr(_class(kind), "__name__", kind))
@@ -110,6 +137,17 @@ def item_type(kind: Any) -> Any:
     return items[0] if len(set(items)) == 1 else Union[tuple(items)]  # noqa: UP007 - values
 
 
+def is_mapping(kind: Any) -> bool:
+    """Return whether a type holds values by key."""
+    return _class(_bare(kind)) in _MAPPINGS
+
+
+def mapping_types(kind: Any) -> tuple[Any, Any]:
+    """Return the types of the keys and of the values of a mapping."""
+    args = typing.get_args(_bare(kind))
+    return (args[0], args[1]) if len(args) == 2 else (Any, Any)
+
+
 def accepts(target: Any, source: Any) -> bool:
     """Return whether every value of type `source` may stand where `target` is asked for."""
     target, source = _bare(target), _bare(source)
@@ -119,19 +157,22 @@ def accepts(target: Any, source: Any) -> bool:
         return all(accepts(target, member) for member in members)
     if members := union_members(target):
         return any(accepts(member, source) for member in members)
-    if Literal in (typing.get_origin(target), typing.get_origin(source)):
+    if _is_literal(target) or _is_literal(source):
         return _literal_accepts(target, source)
     if is_sequence(target):
         return is_sequence(source) and _sequence_accepts(target, source)
+    if is_mapping(target):
+        parts = zip(mapping_types(target), mapping_types(source), strict=True)
+        return is_mapping(source) and all(accepts(wanted, given) for wanted, given in parts)
     return _class_accepts(_class(target), _class(source))
 
 
 def _literal_accepts(target: Any, source: Any) -> bool:
-    if typing.get_origin(source) is not Literal:
+    if not _is_literal(source):
         return False
     values = typing.get_args(source)
-    if typing.get_origin(target) is Literal:
-        return set(values) <= set(typing.get_args(target))
+    if _is_literal(target):
+        return all(_is_one_of(value, typing.get_args(target)) for value in values)
     return all(accepts(target, type(value)) for value in values)
 
 
@@ -187,10 +228,12 @@ def _fit(value: object, kind: Any, *, literal: bool) -> Any:
         return _expect(value is None, value, kind)
     if members := union_members(kind):
         return _fit_any(value, members, kind, literal=literal)
-    if typing.get_origin(kind) is Literal:
-        return _expect(value in typing.get_args(kind), value, kind)
+    if _is_literal(kind):
+        return _expect(_is_one_of(value, typing.get_args(kind)), value, kind)
     if is_sequence(kind):
         return _fit_sequence(value, kind, literal=literal)
+    if is_mapping(kind):
+        return _fit_mapping(value, kind, literal=literal)
     return _fit_class(value, _class(kind), literal=literal)
 
 
@@ -217,11 +260,25 @@ def _fit_sequence(value: object, kind: Any, *, literal: bool) -> Any:
     return items if _class(kind) is list else tuple(items)
 
 
+def _fit_mapping(value: object, kind: Any, *, literal: bool) -> Any:
+    if not isinstance(value, collections.abc.Mapping):
+        raise _misfit(value, kind)
+    key, item = map(_bare, mapping_types(kind))
+    fitted = {
+        _fit(name, key, literal=literal): _fit(one, item, literal=literal)
+        for name, one in value.items()
+    }
+    return fitted if literal else value
+
+
+def _is_one_of(value: object, members: tuple[object, ...]) -> bool:
+    """Return whether a value is one of a literal type's; `true` is not 1 there."""
+    return any(type(value) is type(member) and value == member for member in members)
+
+
 def _fit_class(value: object, kind: Any, *, literal: bool) -> Any:
     if kind in _SCALARS:
         return _fit_scalar(value, kind)
-    if kind in _MAPPINGS:
-        return _expect(isinstance(value, collections.abc.Mapping), value, kind)
     if isinstance(value, kind):
         return value
     if literal and isinstance(kind, type):

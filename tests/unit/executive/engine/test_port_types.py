@@ -1,7 +1,7 @@
 """Names of types, which fits which, and literals made to fit."""
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, Literal, Protocol, runtime_checkable
 
 import numpy as np
@@ -20,7 +20,11 @@ class HasNote(Protocol):
 
 @pytest.mark.parametrize(
     "name",
-    ["int", "any", "Part", "list[Part]", "float | None", "list[list[int]]", "int | str | None"],
+    [
+        *("int", "any", "Part", "list[Part]", "float | None", "list[list[int]]"),
+        *("int | str | None", "dict[str, Part]", "dict[str, list[int]] | None"),
+        *("tuple[float, float]", "list[tuple[int, str]]", "'left' | 'right'", "'both' | None"),
+    ],
 )
 def test_names_of_types_survive_a_round_trip(name):
     assert type_name(parse_type(name, toy_types())) == name
@@ -32,7 +36,10 @@ def test_names_of_types_survive_a_round_trip(name):
         ("flot", "unknown type 'flot'; did you mean 'float'?"),
         ("Prt", "did you mean 'Part'?"),
         ("list", "unknown type 'list'; did you mean 'list[...]'?"),
-        ("dict[str, int]", "is not a type; expected a name, list[NAME] or NAME | None"),
+        ("dict[int]", "is not a type; expected a name, list[NAME], dict[str, NAME]"),
+        ("set[int]", "is not a type"),
+        ("tuple[]", "is not a type"),
+        ("dict", "did you mean 'dict[...]'?"),
         ("1 +", "is not a type"),
     ],
 )
@@ -67,6 +74,13 @@ def test_wrong_names_of_types_are_answered(name, message):
         (NDArray[np.float64], np.ndarray, True),
         (np.ndarray, Part, False),
         (Sequence[int], str, False),
+        (Mapping[str, float], dict[str, int], True),
+        (dict[str, int], Mapping[str, str], False),
+        (dict[str, int], list[int], False),
+        (dict, Mapping[str, Part], True),
+        (Literal["a", "b"] | None, Literal["b"], True),
+        (Literal[1], Literal[True], False),
+        (Colour | None, None | Colour, True),
     ],
 )
 def test_which_type_fits_which(target, source, fits):
@@ -84,6 +98,12 @@ def test_which_type_fits_which(target, source, fits):
         ({"mass_kg": 1, "colour": "green"}, Part, Part(1.0, Colour.GREEN)),
         ({"mass_kg": 1, "colour": "red", "holes": [3]}, Part | None, Part(1.0, Colour.RED, (3,))),
         ("a", Literal["a", "b"], "a"),
+        ({"x": 1}, Mapping[str, float], {"x": 1.0}),
+        ({"x": ["red"]}, dict[str, tuple[Colour, ...]], {"x": (Colour.RED,)}),
+        ({"red": 1}, dict[Colour, int], {Colour.RED: 1}),
+        ([1, "red"], tuple[float, Colour], (1.0, Colour.RED)),
+        (1, float | str, 1.0),
+        ({"mass_kg": 1, "colour": "red"}, dict[str, Any] | Part, {"mass_kg": 1, "colour": "red"}),
     ],
 )
 def test_literals_become_values_of_the_type(literal, kind, value):
@@ -110,6 +130,11 @@ def test_list_of_numbers_becomes_an_array():
         (["a"], NDArray[np.float64], "expected an array of numbers"),
         (None, float, "expected float, got None"),
         ("x", int | None, "expected int | None, got 'x'"),
+        (True, int | str, "expected int | str, got True"),
+        (True, Literal[1], "expected 1, got True"),
+        ({"x": "a"}, dict[str, int], "expected int, got 'a'"),
+        ({"blu": 1}, dict[Colour, int], "Colour has no value 'blu'"),
+        ([1], dict[str, int], "expected dict[str, int], got list"),
     ],
 )
 def test_literals_that_do_not_fit_are_refused(literal, kind, message):
@@ -122,6 +147,9 @@ def test_values_at_run_time_are_checked_and_never_converted():
     check(np.zeros(3), NDArray[np.float64])
     with pytest.raises(ValueError, match="expected Colour, got 'red'"):
         check("red", Colour)
+    check({"a": (1, 2)}, dict[str, Sequence[int]])
+    with pytest.raises(ValueError, match="expected int, got True"):
+        check({"a": (True,)}, Mapping[str, Sequence[int]])
     with pytest.raises(ValueError, match="expected Part, got dict"):
         check({"mass_kg": 1.0}, Part)
 
