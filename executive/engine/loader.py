@@ -102,7 +102,9 @@ def load_mission(
     program, cell = loading.program(), loading.cell()
     if loading.faults or program is None or cell is None or document is None:
         raise DocumentError(loading.faults)
-    return Mission(program.tree, program.subtrees, program.skills, program.sources, document, cell)
+    return Mission(
+        program.tree, program.subtrees, program.skills, loading.library.sources, document, cell
+    )
 
 
 def load_program(

@@ -24,6 +24,9 @@ FAILED = "stub.failed"
 """Reason of a scripted failure that names none."""
 
 
+_AT_ONCE = StubOutcome.model_validate({"outcome": "success"})
+
+
 @dataclass(frozen=True, slots=True)
 class _Step:
     ticks: int
@@ -95,7 +98,7 @@ class _Maker:
         outputs = self._ports("out", stub.out)
         for name in inputs.keys() & outputs.keys():
             self._complain(f"{name!r} is an input and an output; try a second name", "out", name)
-        outcomes: Sequence[StubOutcome] = stub.outcomes or (StubOutcome(outcome="success"),)
+        outcomes: Sequence[StubOutcome] = stub.outcomes or (_AT_ONCE,)
         script = tuple(self._step(i, each, outputs) for i, each in enumerate(outcomes))
         namespace = {
             "__doc__": stub.about or f"Answer as the stub {self._name} says.",
