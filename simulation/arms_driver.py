@@ -1,7 +1,7 @@
 """The controllers of the simulated arms: `robots.interfaces.ArmsDriver` over `YumiBody`."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -18,6 +18,21 @@ _START_TOLERANCE_RAD = 2e-3
 # Brakes take out speed four times as fast as a motion would, and bite at once.
 _BRAKE_ACCELERATION, _BRAKE_JERK = 4.0, 1000.0
 _Mode = Literal["rest", "motion", "stop", "brake"]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class DriverState:
+    """The controllers at rest, grippers empty.
+
+    Attributes:
+        target_rad: Where the arms are held, shape (14,).
+        grips: What the fingers were last told to do.
+        openings_m: Where they are.
+    """
+
+    target_rad: Floats
+    grips: Mapping[Arm, Grip]
+    openings_m: Mapping[Arm, float]
 
 
 class SimArmsDriver:
@@ -71,6 +86,26 @@ class SimArmsDriver:
             moving=self._mode != "rest",
             stamp_s=self._now_s(),
         )
+
+    def rest_state(self) -> DriverState:
+        """Return what the controllers go on from.
+
+        Raises:
+            DeviceError: Something moves or is held, which a state at rest does not tell.
+        """
+        holding = [arm for arm in ARMS if self.holds(arm)]
+        if holding or not self.at_rest:
+            got = f"the {holding[0]} gripper holds something" if holding else "something moves"
+            raise DeviceError(f"arms: no state to go on from; got {got}; expected arms at rest")
+        grips = {arm: gripper.grip for arm, gripper in self._grippers.items()}
+        return DriverState(self._target_rad.copy(), grips, dict(self._openings()))
+
+    def take_rest_state(self, state: DriverState) -> None:
+        """Hold arms and fingers where they rested; the body must stand there already."""
+        self._rest()
+        self._target_rad = state.target_rad.copy()
+        for arm, gripper in self._grippers.items():
+            gripper.take_state(state.grips[arm], state.openings_m[arm])
 
     def execute(self, trajectory: Trajectory) -> None:
         """Start a trajectory that begins at the present state.

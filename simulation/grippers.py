@@ -38,6 +38,15 @@ class Gripper:
         """Whether the fingers are still on their way."""
         return self.opening_m != self._target_m()
 
+    @property
+    def grip(self) -> Grip:
+        """What the fingers were last told to do."""
+        return self._grip
+
+    def take_state(self, grip: Grip, opening_m: float) -> None:
+        """Stand as an empty gripper stood."""
+        self._grip, self.opening_m = grip, opening_m
+
     def command(self, grip: Grip) -> None:
         """Start opening or closing; closing fingers take what is between them now."""
         self._rod.release_hand(self._arm)

@@ -1,5 +1,8 @@
 """The overhead camera of the table cell: sees the arms and the cable, and nothing else."""
 
+from collections.abc import Mapping
+from typing import Any
+
 import numpy as np
 
 from perception.camera import CameraFrame, CameraModel
@@ -42,6 +45,15 @@ class OverheadCamera:
             speckle=config.speckle,
             depth_noise_m=config.depth_noise_m,
         )
+
+    @property
+    def noise_state(self) -> Mapping[str, Any]:
+        """State of the generator behind all noise to come."""
+        return self._rng.bit_generator.state
+
+    def take_noise_state(self, state: Mapping[str, Any]) -> None:
+        """Go on with the noise of that state; the cloth stays."""
+        self._rng.bit_generator.state = state
 
     def capture(self) -> CameraFrame:
         """Take a frame now."""

@@ -84,6 +84,11 @@ class Stream:
             self._last = data
             self._messages.append(StreamMessage(self.topic, self.schema, now_s, data))
 
+    def restart(self) -> None:
+        """Forget what has been kept; the next message is due now, and differs from all before."""
+        self._last, self._due_s = b"", 0.0
+        self._messages.clear()
+
     def drain(self) -> list[StreamMessage]:
         """Return and forget what has been kept."""
         messages, self._messages = self._messages, []

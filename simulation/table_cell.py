@@ -13,6 +13,7 @@ from simulation.cable.configurations import starting_configuration
 from simulation.cable.truth import CableTruth, cable_truth
 from simulation.clock import SimClock
 from simulation.overhead_camera import OverheadCamera
+from simulation.snapshots import TableSnapshot
 from simulation.streams import Stream, joint_states_json, scene_json
 from simulation.table_cell_config import (
     CableScenario,
@@ -104,6 +105,27 @@ class TableCell:
     def close(self) -> None:
         """Shut the physics server."""
         self._world.body.close()
+
+    def snapshot(self) -> bytes:
+        """Return the state of arms, cable and camera.
+
+        Raises:
+            DeviceError: Something moves or is held.
+        """
+        return TableSnapshot(self._world.state(), self.camera.noise_state).to_bytes()
+
+    def restore(self, snapshot: bytes) -> None:
+        """Go on from a snapshot of a cell with the same configuration, scenario and seed.
+
+        Raises:
+            InputError: It is no snapshot, or one of another cable.
+        """
+        state = TableSnapshot.from_bytes(snapshot)
+        self._world.take_state(state.world)
+        self.camera.take_noise_state(state.camera)
+        for stream in (self._joint_states, self._scene):
+            stream.restart()
+        self._record()
 
     def truth(self) -> CableTruth:
         """Score the cable as it lies now."""

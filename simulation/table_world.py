@@ -1,5 +1,7 @@
 """Arms and cable in one time: each step moves the arms, then the cable that they push and hold."""
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -7,8 +9,9 @@ from robots.descriptions import DESCRIPTIONS
 from robots.interfaces import ARMS
 from robots.limits import yumi_limits
 from robots.placement import HOME_RAD
-from simulation.arms_driver import SimArmsDriver
+from simulation.arms_driver import DriverState, SimArmsDriver
 from simulation.cable.rod import Rod
+from simulation.cable.rod_state import RodState
 from simulation.cable_obstacles import CableObstacles
 from simulation.grippers import OPEN_M
 from simulation.yumi_body import YumiBody
@@ -17,6 +20,25 @@ Floats = NDArray[np.float64]
 
 # Once nothing has moved for this many steps, the arms need no more physics.
 _SETTLING_STEPS = 12
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class WorldState:
+    """Arms at rest and a free cable at one moment.
+
+    Attributes:
+        steps: Steps taken since the world began.
+        still_steps: For how many of them nothing has moved.
+        joints: Position and velocity of each driven joint of the body, shape (18, 2).
+        driver: The arms' controllers.
+        rod: The cable.
+    """
+
+    steps: int
+    still_steps: int
+    joints: Floats
+    driver: DriverState
+    rod: RodState
 
 
 class TableWorld:
@@ -45,6 +67,28 @@ class TableWorld:
     def now_s(self) -> float:
         """Return the time since the world began [s]."""
         return self.steps * self.step_s
+
+    def state(self) -> WorldState:
+        """Return what the world goes on from.
+
+        Raises:
+            DeviceError: Something moves or is held.
+        """
+        driver = self.driver.rest_state()
+        return WorldState(
+            self.steps, self._still_steps, self.body.joints(), driver, self.rod.state()
+        )
+
+    def take_state(self, state: WorldState) -> None:
+        """Go on from a state of a world with the same cable, bit for bit.
+
+        Raises:
+            InputError: It is that of another cable.
+        """
+        self.rod.take_state(state.rod)
+        self.body.place_joints(state.joints)
+        self.driver.take_rest_state(state.driver)
+        self.steps, self._still_steps = state.steps, state.still_steps
 
     def advance(self, steps: int) -> None:
         """Let time pass, arms and cable in lockstep; resting arms cost nothing."""

@@ -100,6 +100,17 @@ class YumiBody:
         states = self._states(self._arm_joints)
         return states[:, 0], states[:, 1]
 
+    def joints(self) -> Floats:
+        """Return position and velocity of all joints that are driven, shape (18, 2)."""
+        return self._states(self._driven)
+
+    def place_joints(self, joints: Floats) -> None:
+        """Put all joints that are driven into the state that `joints` has returned."""
+        for joint, (value, velocity) in zip(self._driven, joints.tolist(), strict=True):
+            self._bullet.resetJointState(
+                self._robot, joint, value, velocity, physicsClientId=self._server
+            )
+
     def openings_m(self) -> Mapping[Arm, float]:
         """Return the distance between the fingers of each gripper."""
         fingers = self._states(self._finger_joints)[:, 0].reshape(len(ARMS), 2).sum(axis=1)

@@ -60,3 +60,28 @@ class Cell(Protocol):
         Only the report of a run asks for it, once, after the mission has ended.
         """
         ...
+
+
+@runtime_checkable
+class RestorableCell(Protocol):
+    """A cell, simulated, that can be put back into a state that it was in.
+
+    What a snapshot holds is the world's business; it may hold what no skill is to know.
+    """
+
+    def snapshot(self) -> bytes:
+        """Return the state of everything in the cell, its clock and its chance included.
+
+        Raises:
+            DeviceError: The cell is in no state to go on from, because something moves or is
+                held.
+        """
+        ...
+
+    def restore(self, snapshot: bytes) -> None:
+        """Take up the state of a cell that was opened with the same settings.
+
+        Raises:
+            InputError: These are no such bytes, or those of another cell.
+        """
+        ...

@@ -10,6 +10,7 @@ from executive.core.errors import InputError
 from simulation.cable import kernels
 from simulation.cable.hands import GraspMode, Hand, Strand
 from simulation.cable.parameters import RodParameters
+from simulation.cable.rod_state import RodState, fill_chain, fill_neighbours
 
 Floats = NDArray[np.float64]
 
@@ -186,6 +187,55 @@ class Rod:
     def force_n(self, hand: str) -> Floats:
         """Return the force of a hand on the cable over the last advance, world, shape (3,)."""
         return sum((s.force_n for s in self._known(hand).strands), np.zeros(3))
+
+    def state(self) -> RodState:
+        """Return a copy of all that decides how the cable goes on; no hand may hold it."""
+        chain, near = self._chain, self._near
+        pairs, obstacle_pairs = int(near.counts[0]), int(near.counts[1])
+        hands = [self._hands[name].pose for name in sorted(self._hands)]
+        return RodState(
+            positions=chain.positions.copy(),
+            velocities=chain.velocities.copy(),
+            rest_lengths=chain.rest_lengths.copy(),
+            tensions=chain.tensions.copy(),
+            impulses=chain.impulses.copy(),
+            peak=chain.peak.copy(),
+            reference=near.reference.copy(),
+            obstacle_reference=near.obstacle_reference.copy(),
+            order=near.order.copy(),
+            pairs=near.pairs[:pairs].copy(),
+            normals=near.normals[:pairs].copy(),
+            obstacle_pairs=near.obstacle_pairs[:obstacle_pairs].copy(),
+            stale=near.counts[2:].copy(),
+            capsules=self._capsules.end.copy(),
+            radii=self._capsules.radii.copy(),
+            hand_poses=np.array(hands).reshape(-1, 4, 4),
+            times_s=np.array([self.time_s, self._still_since_s]),
+            still=self._still_m.copy(),
+            at_rest=np.array([self._at_rest]),
+        )
+
+    def take_state(self, state: RodState) -> None:
+        """Go on from the state of the same cable; hands of the same names stand open.
+
+        Raises:
+            InputError: It is the state of another cable, or of other hands.
+        """
+        if len(state.hand_poses) != len(self._hands):
+            raise InputError(
+                f"Rod: state; got {len(state.hand_poses)} hands; expected {len(self._hands)}"
+            )
+        fill_chain(self._chain, state)
+        self._near = _neighbours(len(state.positions), len(state.radii))
+        fill_neighbours(self._near, state)
+        self._capsules = kernels.Obstacles(state.capsules, state.capsules, state.radii)
+        self._next_capsules = self._capsules
+        self._hands = {
+            name: Hand(pose)
+            for name, pose in zip(sorted(self._hands), state.hand_poses, strict=True)
+        }
+        self.time_s, self._still_since_s = state.times_s.tolist()
+        self._still_m, self._at_rest = state.still.copy(), bool(state.at_rest[0])
 
     @property
     def at_rest(self) -> bool:
