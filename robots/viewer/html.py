@@ -115,7 +115,7 @@ def _still(stage: Stage, frames: Sequence[SceneFrame]) -> dict[str, object]:
 
 
 def _moving(stage: Stage, frames: Sequence[SceneFrame]) -> dict[str, object]:
-    """Return times from the first frame on, poses and cable a frame, traces and captions."""
+    """Return the first time and all times from it on, poses and cable a frame, traces and captions."""
     known = {link.name for link in stage.robot.links if link.shapes}
     links = sorted(known & frames[0].link_poses.keys())
     poses: dict[str, Floats] = {}
@@ -125,6 +125,7 @@ def _moving(stage: Stage, frames: Sequence[SceneFrame]) -> dict[str, object]:
         rows.append([*_poses(poses, links), *_points(frame.cable_m, CABLE_POINTS)])
     times_s = [round(frame.time_s - frames[0].time_s, 3) for frame in frames]
     return {
+        "start": frames[0].time_s,
         "times": times_s,
         "links": links,
         "width": len(rows[0]),

@@ -104,6 +104,12 @@
     else return;
     event.preventDefault();
   });
+  // A page around this one says where in time to stand, on the cell's clock.
+  window.addEventListener("message", (event) => {
+    if (event.origin !== location.origin || typeof event.data?.seek_s !== "number") return;
+    play(false);
+    show(event.data.seek_s - recording.start);
+  });
   // #t=12.5 in the address opens the page at that time, paused.
   const asked = /#t=([\d.]+)/.exec(location.hash);
   show(asked ? +asked[1] : 0);

@@ -1,0 +1,1 @@
+"""The inspector in a browser: a page on loopback that reads recordings, live ones too."""

@@ -1,0 +1,192 @@
+"""What the page may ask of one recording, whether its run has ended or still goes on."""
+
+import threading
+from collections.abc import Mapping
+from dataclasses import asdict
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+from executive.core.errors import InputError
+from executive.core.registry import closest
+from executive.engine.recording.reader import KeyState, Recording
+from executive.inspector.brief import brief
+from executive.inspector.index import RunIndex
+from executive.inspector.overlays import picture_of
+from executive.inspector.web.activity import Activity, Codes
+from executive.inspector.web.finding import Wish, found
+
+
+class Session:
+    """One recording, read again as it grows; its methods may be called from any thread."""
+
+    def __init__(self, path: Path) -> None:
+        """Open a recording.
+
+        Raises:
+            RecordingError: It cannot be read.
+        """
+        self.path = path
+        self._lock = threading.RLock()
+        self._size = -1
+        self._recording = Recording.open(path)
+        self._activity = Activity(len(self._recording.header.nodes))
+        self._index = RunIndex(self._recording)
+        self.refresh()
+
+    @property
+    def recording(self) -> Recording:
+        """The recording as far as it has been read."""
+        return self._recording
+
+    @property
+    def ended(self) -> bool:
+        """Whether the run came to its end and said so."""
+        return self._recording.result is not None
+
+    def refresh(self) -> bool:
+        """Read what has been written since; return whether there was anything."""
+        with self._lock:
+            size = self.path.stat().st_size
+            if size == self._size:
+                return False
+            self._size = size
+            self._recording = Recording.open(self.path)
+            self._activity.follow(self._recording)
+            self._tick_document.cache_clear()
+            return True
+
+    def progress(self) -> dict[str, object]:
+        """Return how far the run is: what a page needs to hear again and again."""
+        result, count = self._recording.result, len(self._recording)
+        return {
+            "ticks": count,
+            "time_s": self._recording.tick(count - 1).time_s if count else 0.0,
+            "ended": self.ended,
+            "report": None if result is None else result.report.model_dump(mode="json"),
+            "rate": None if result is None else asdict(result.rate),
+        }
+
+    def run(self) -> dict[str, object]:
+        """Return what is run: the mission, its nodes, and how far it is."""
+        header = self._recording.header
+        return {
+            "file": self.path.name,
+            "mission": header.mission,
+            "about": header.about,
+            "seed": header.seed,
+            "tick_hz": header.tick_hz,
+            "started_utc": header.started_utc,
+            "inputs": header.inputs,
+            "scenario": header.scenario,
+            "versions": header.versions,
+            "nodes": [node.model_dump(mode="json") for node in header.nodes],
+            "sources": [source.model_dump(mode="json") for source in header.sources],
+            **self.progress(),
+        }
+
+    def lanes(self, first: int, last: int, columns: int) -> Codes:
+        """Return what every node did between two ticks; see `Activity.lanes`."""
+        with self._lock:
+            return self._activity.lanes(first, last, columns)
+
+    def tick(self, number: int) -> dict[str, Any]:
+        """Return everything about one tick.
+
+        Raises:
+            InputError: There is no such tick.
+        """
+        count = len(self._recording)
+        if not 0 <= number < count:
+            raise InputError(f"no tick {number}; expected 0 to {count - 1}")
+        return self._tick_document(number)
+
+    @lru_cache(maxsize=512)  # noqa: B019 - a session lives as long as the server
+    def _tick_document(self, number: int) -> dict[str, Any]:
+        with self._lock:
+            recording = self._recording
+            tick, states = recording.tick(number), recording.blackboard(number)
+            reasons = recording.reasons(number)
+            statuses = recording.statuses(number)
+        picture = picture_of(states)
+        return {
+            "tick": number,
+            "time_s": tick.time_s,
+            "duration_s": tick.duration_s,
+            "statuses": [status.value for status in statuses],
+            "visited": tick.visited,
+            "reasons": {node: str(reason) for node, reason in reasons.items()},
+            "halts": [asdict(halt) for halt in tick.halts],
+            "faults": [asdict(fault) for fault in tick.faults],
+            "board": [_row(key, state, number) for key, state in states.items()],
+            "picture": None if picture is None else asdict(picture),
+        }
+
+    def history(self, key: str) -> dict[str, object]:
+        """Return every write of a key, with values in one line.
+
+        Raises:
+            InputError: Nothing ever wrote it.
+        """
+        index = self.index()
+        places = index.writes.get(key)
+        if places is None:
+            raise InputError(f"nothing writes {key!r}; {closest(key, [*index.writes])}")
+        writes = [
+            {"tick": place.tick, "writer": place.writer, "value": brief(index.value_at(place))}
+            for place in places
+        ]
+        return {"key": key, "writes": writes}
+
+    def find(self, wish: Wish) -> int | None:
+        """Return the nearest tick that a wish asks for, None where there is none.
+
+        Raises:
+            InputError: It names what the recording does not have.
+        """
+        return found(self.index(), wish)
+
+    def index(self) -> RunIndex:
+        """Return what happened when, as far as the recording has been read."""
+        with self._lock:
+            if len(self._index) != len(self._recording):
+                self._index = RunIndex(self._recording)
+            return self._index
+
+    def value(self, key: str, number: int) -> dict[str, object]:
+        """Return one value in full, with its history.
+
+        Raises:
+            InputError: Nothing had written the key by then.
+        """
+        with self._lock:
+            states = self._recording.blackboard(number)
+        if key not in states:
+            raise InputError(f"{key!r} has no value at tick {number}")
+        state = states[key]
+        return {"key": key, "value": state.value, "writer": state.writer, "tick": state.tick}
+
+    def image(self, number: int) -> bytes:
+        """Return an image as a PNG file.
+
+        Raises:
+            InputError: There is no such image.
+        """
+        image = self._images().get(number)
+        if image is None:
+            raise InputError(f"no image {number} in {self.path}")
+        return image
+
+    def _images(self) -> Mapping[int, bytes]:
+        with self._lock:
+            return {image.number: image.png for image in self._recording.images()}
+
+
+def _row(key: str, state: KeyState, number: int) -> dict[str, object]:
+    return {
+        "key": key,
+        "value": brief(state.value),
+        "writer": state.writer,
+        "tick": state.tick,
+        "fresh": state.tick == number,
+    }
