@@ -22,6 +22,12 @@ _COMMANDS: Mapping[str, str] = MappingProxyType(
         "run": "executive.cli.cmd_run",
         "check": "executive.cli.cmd_check",
         "inspect": "executive.cli.cmd_inspect",
+        "ticks": "executive.cli.cmd_ticks",
+        "why": "executive.cli.cmd_why",
+        "why-not": "executive.cli.cmd_why",
+        "why-halted": "executive.cli.cmd_why",
+        "who": "executive.cli.cmd_who",
+        "history": "executive.cli.cmd_who",
         "skills": "executive.cli.cmd_skills",
         "tree": "executive.cli.cmd_tree",
         "perceive": "executive.cli.cmd_perceive",
@@ -44,7 +50,7 @@ class _LazyCommands(TyperGroup):
         """Import and return a command, None where there is none of that name."""
         if cmd_name not in _COMMANDS:
             return None
-        command = getattr(import_module(_COMMANDS[cmd_name]), cmd_name)
+        command = getattr(import_module(_COMMANDS[cmd_name]), cmd_name.replace("-", "_"))
         holder = typer.Typer()
         if isinstance(command, typer.Typer):
             holder.add_typer(command, name=cmd_name)
