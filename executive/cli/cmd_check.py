@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 
 from executive.app.catalogue import port_types, skills
+from executive.cli.files import yaml_files
 from executive.core.errors import Fault
 from executive.engine.loader import Checked, check_files
 
@@ -20,18 +21,13 @@ def check(
     ] = False,
 ) -> None:
     """Check trees, missions and cells without running them; exit 2 when one has faults."""
-    checked, faults = check_files(_yaml_files(files), skills=skills(), types=port_types())
+    checked, faults = check_files(yaml_files(files), skills=skills(), types=port_types())
     if as_json:
         typer.echo(_as_json(checked, faults))
     else:
         _print(checked, faults)
     if faults:
         raise typer.Exit(2)
-
-
-def _yaml_files(paths: Sequence[Path]) -> list[Path]:
-    found = [sorted(path.rglob("*.yaml")) if path.is_dir() else [path] for path in paths]
-    return [file for files in found for file in files]
 
 
 def _as_json(checked: Sequence[Checked], faults: Sequence[Fault]) -> str:

@@ -8,6 +8,7 @@ search paths that were given, and what ships with the package; the first file wi
 
 import importlib.util
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -53,21 +54,63 @@ def search_folders(beside: Path | None, search_paths: Iterable[Path]) -> tuple[P
     return tuple(dict.fromkeys(folders))
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Entry:
+    """What was read from one file.
+
+    Attributes:
+        source: The file as it was read.
+        document: What it says, None where it has faults.
+        tree: The tree or mission in it, None where it has faults or is neither.
+        stubs: The scripted skills that it declares.
+        faults: What is wrong with the file by itself.
+    """
+
+    source: Source
+    document: Document | None
+    tree: TreeSpec | None
+    stubs: Mapping[str, type[Skill]]
+    faults: tuple[Fault, ...]
+
+
+class Shelf:
+    """Files that were read: several questions that share a shelf read each of them once."""
+
+    def __init__(self, types: Registry[type]) -> None:
+        """Know the types that ports may have."""
+        self._types = types
+        self._entries: dict[Path, Entry] = {}
+
+    def entry(self, file: Path) -> Entry:
+        """Return what is in a file.
+
+        Raises:
+            InputError: The file cannot be read.
+        """
+        key = file.resolve()
+        if key not in self._entries:
+            self._entries[key] = _read(file, self._types)
+        return self._entries[key]
+
+
 class Library:
     """The documents behind one question of the user, and everything wrong with them."""
 
-    def __init__(self, types: Registry[type], folders: Sequence[Path]) -> None:
-        """Know the types that ports may have, and where to look."""
-        self._types = types
+    def __init__(self, shelf: Shelf, folders: Sequence[Path]) -> None:
+        """Know the files that were read before, and where to look."""
+        self._shelf = shelf
         self._folders = tuple(folders)
-        self._read: dict[Path, tuple[Source, Document | None, TreeSpec | None]] = {}
-        self._stubs: dict[str, Mapping[str, type[Skill]]] = {}
-        self.faults: list[Fault] = []
+        self._used: dict[Entry, None] = {}
 
     @property
     def sources(self) -> tuple[Source, ...]:
         """Every file that was read, in order."""
-        return tuple(source for source, _, _ in self._read.values())
+        return tuple(entry.source for entry in self._used)
+
+    @property
+    def faults(self) -> list[Fault]:
+        """What is wrong with these files by themselves."""
+        return [fault for entry in self._used for fault in entry.faults]
 
     def find(self, name: str, kind: str) -> Path:
         """Return the file of a document.
@@ -92,7 +135,7 @@ class Library:
         Raises:
             InputError: The file cannot be read.
         """
-        return self._entry(file)[1]
+        return self._entry(file).document
 
     def tree(self, file: Path) -> TreeSpec | None:
         """Return the tree or mission in a file, None where it has faults or is neither.
@@ -100,7 +143,7 @@ class Library:
         Raises:
             InputError: The file cannot be read.
         """
-        return self._entry(file)[2]
+        return self._entry(file).tree
 
     def stubs(self, file: Path) -> Mapping[str, type[Skill]]:
         """Return the scripted skills that a file declares, none where it has faults.
@@ -108,62 +151,72 @@ class Library:
         Raises:
             InputError: The file cannot be read, or holds something else.
         """
-        source, document, _ = self._entry(file)
-        if document is not None and not isinstance(document, StubsDocument):
-            raise InputError(f"{document.name!r} holds no stubs")
-        return self._stubs.get(source.file, {})
+        entry = self._entry(file)
+        if entry.document is not None and not isinstance(entry.document, StubsDocument):
+            raise InputError(f"{entry.document.name!r} holds no stubs")
+        return entry.stubs
 
-    def _entry(self, file: Path) -> tuple[Source, Document | None, TreeSpec | None]:
-        key = file.resolve()
-        if key not in self._read:
-            source = read_source(str(file), _text(file))
-            document, faults = validate(source)
-            tree = None
-            if document is not None:
-                faults = _misnamed(document, source)
-            if isinstance(document, (TreeDocument, MissionDocument)):
-                tree, more = self._tree(document, source)
-                faults += more
-            if isinstance(document, StubsDocument):
-                self._stubs[source.file], more = stub_skills(document, source, self._types)
-                faults += more
-            self.faults += faults
-            self._read[key] = source, document, tree
-        return self._read[key]
+    def _entry(self, file: Path) -> Entry:
+        entry = self._shelf.entry(file)
+        self._used[entry] = None
+        return entry
 
-    def _tree(
-        self, document: TreeDocument | MissionDocument, source: Source
-    ) -> tuple[TreeSpec, list[Fault]]:
-        faults: list[Fault] = []
-        inputs = {
-            name: self._port(port, source, ("in", name), faults)
-            for name, port in document.in_.items()
-        }
-        outputs = {
-            name: self._port(port, source, ("out", name), faults)
-            for name, port in document.out.items()
-        }
-        for name in inputs.keys() & outputs.keys():
-            line, column = source.key_mark(("out", name))
-            message = f"{name!r} is an input and an output; try a second name"
-            faults.append(Fault(source.file, line, column, "", message))
-        return TreeSpec(document, source, outline(document, source), inputs, outputs), faults
 
-    def _port(
-        self, port: OutPort, source: Source, at: tuple[str, str], faults: list[Fault]
-    ) -> Port:
-        kind: Any = Any
-        default: object = REQUIRED
-        where: tuple[str, ...] = (*at, "type")
-        try:
-            kind = parse_type(port.type, self._types)
-            if isinstance(port, InPort) and port.has_default:
-                where = (*at, "default")
-                default = fit(port.default, kind)
-        except (InputError, ValueError) as error:
-            line, column = source.value_mark(where)
-            faults.append(Fault(source.file, line, column, "", f"{'/'.join(at)}: {error}"))
-        return Port(kind, port.about, port.unit, default)
+def _read(file: Path, types: Registry[type]) -> Entry:
+    source = read_source(str(file), _text(file))
+    document, faults = validate(source)
+    tree: TreeSpec | None = None
+    stubs: Mapping[str, type[Skill]] = {}
+    if document is not None:
+        faults += _misnamed(document, source)
+    if isinstance(document, (TreeDocument, MissionDocument)):
+        tree = _tree(document, source, types, faults)
+    if isinstance(document, StubsDocument):
+        stubs, more = stub_skills(document, source, types)
+        faults += more
+    return Entry(source, document, tree, stubs, tuple(faults))
+
+
+def _tree(
+    document: TreeDocument | MissionDocument,
+    source: Source,
+    types: Registry[type],
+    faults: list[Fault],
+) -> TreeSpec:
+    inputs = {
+        name: _port(port, source, ("in", name), types, faults)
+        for name, port in document.in_.items()
+    }
+    outputs = {
+        name: _port(port, source, ("out", name), types, faults)
+        for name, port in document.out.items()
+    }
+    for name in sorted(inputs.keys() & outputs.keys()):
+        line, column = source.key_mark(("out", name))
+        message = f"{name!r} is an input and an output; try a second name"
+        faults.append(Fault(source.file, line, column, "", message))
+    return TreeSpec(document, source, outline(document, source), inputs, outputs)
+
+
+def _port(
+    port: OutPort,
+    source: Source,
+    at: tuple[str, str],
+    types: Registry[type],
+    faults: list[Fault],
+) -> Port:
+    kind: Any = Any
+    default: object = REQUIRED
+    where: tuple[str, ...] = (*at, "type")
+    try:
+        kind = parse_type(port.type, types)
+        if isinstance(port, InPort) and port.has_default:
+            where = (*at, "default")
+            default = fit(port.default, kind)
+    except (InputError, ValueError) as error:
+        line, column = source.value_mark(where)
+        faults.append(Fault(source.file, line, column, "", f"{'/'.join(at)}: {error}"))
+    return Port(kind, port.about, port.unit, default)
 
 
 def _text(file: Path) -> str:

@@ -15,7 +15,7 @@ from executive.engine.document import (
     StubsDocument,
     SubtreeNode,
 )
-from executive.engine.library import Library, kind_of_document, search_folders
+from executive.engine.library import Library, Shelf, kind_of_document, search_folders
 from executive.engine.outline import NodeSpec, TreeSpec
 from executive.engine.sources import Source
 from executive.engine.stubs import Skillset
@@ -95,7 +95,7 @@ def load_mission(
         DocumentError: All that is wrong with it.
         InputError: No such mission, or a file that is none.
     """
-    loading = _Loading(path_or_name, "mission", skills, types, search_paths)
+    loading = _Loading(path_or_name, "mission", skills, Shelf(types), search_paths)
     document = loading.library.document(loading.file)
     if document is not None and not isinstance(document, MissionDocument):
         raise InputError(f"{loading.file}: expected a mission, got {document.name!r}")
@@ -126,7 +126,7 @@ def load_program(
         DocumentError: All that is wrong with it.
         InputError: No such tree, or a file that is none.
     """
-    loading = _Loading(path_or_name, "tree", skills, types, search_paths)
+    loading = _Loading(path_or_name, "tree", skills, Shelf(types), search_paths)
     document = loading.library.document(loading.file)
     if isinstance(document, CellDocument | StubsDocument):
         kind = kind_of_document(document)
@@ -152,12 +152,38 @@ def check_files(
     Raises:
         InputError: A file cannot be read.
     """
-    checked, faults = [], set()
+    checked, faults, shelf = [], set(), Shelf(types)
     for file in files:
-        loading = _Loading(file, "tree", skills, types, search_paths)
+        loading = _Loading(file, "tree", skills, shelf, search_paths)
         checked.append(loading.check())
         faults |= set(loading.faults)
     return checked, sorted(faults)
+
+
+def load_programs(
+    files: Iterable[Path],
+    *,
+    skills: Registry[type[Skill]],
+    types: Registry[type],
+    search_paths: Sequence[Path] = (),
+) -> tuple[list[Program], list[Fault]]:
+    """Load the trees and missions among some files.
+
+    Returns:
+        Those without faults, and every fault of all files once, cells included.
+
+    Raises:
+        InputError: A file cannot be read.
+    """
+    programs, faults, shelf = [], set(), Shelf(types)
+    for file in files:
+        loading = _Loading(file, "tree", skills, shelf, search_paths)
+        program = loading.program()
+        loading.cell()
+        faults |= set(loading.faults)
+        if program is not None and not loading.faults:
+            programs.append(program)
+    return programs, sorted(faults)
 
 
 class _Loading:
@@ -168,14 +194,14 @@ class _Loading:
         path_or_name: str | Path,
         kind: str,
         skills: Registry[type[Skill]],
-        types: Registry[type],
+        shelf: Shelf,
         search_paths: Sequence[Path],
     ) -> None:
         beside = Path(path_or_name)
         is_path = isinstance(path_or_name, Path) or beside.suffix != "" or beside.is_file()
         folders = search_folders(beside if is_path else None, search_paths)
         self._skills = Skillset(skills)
-        self.library = Library(types, folders)
+        self.library = Library(shelf, folders)
         self.file = beside if is_path else self.library.find(str(path_or_name), kind)
         self._subtrees: dict[str, TreeSpec | None] = {}
         self._faults: list[Fault] = []

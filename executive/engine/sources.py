@@ -47,7 +47,7 @@ for _name, _pattern, _first in (
 _PARSER: Any = yaml.CSafeLoader if yaml.__with_libyaml__ else yaml.SafeLoader
 
 
-class _Loader(_PARSER):
+class StrictLoader(_PARSER):
     """PyYAML's parser with the resolver of YAML 1.2."""
 
     yaml_implicit_resolvers = _Resolver.yaml_implicit_resolvers
@@ -157,7 +157,7 @@ def read_source(file: str, text: str) -> Source:
     reading = _Reading(file)
     data: object = None
     try:
-        loader = _Loader(text)
+        loader = StrictLoader(text)
         try:
             _refuse_anchors(text, reading)
             root = loader.get_single_node()
@@ -181,7 +181,7 @@ def _refuse_anchors(text: str, reading: _Reading) -> None:
     """Find anchors and aliases in the event stream: composed nodes no longer show them."""
     if "&" not in text and "*" not in text:
         return
-    for event in yaml.parse(text, Loader=_Loader):
+    for event in yaml.parse(text, Loader=StrictLoader):
         name = getattr(event, "anchor", None)
         if name is not None:
             reading.complain(

@@ -4,7 +4,7 @@ import pytest
 from toy_language import toy_skills, toy_types
 
 from executive.core.errors import DocumentError
-from executive.engine.library import Library
+from executive.engine.library import Library, Shelf
 from executive.engine.loader import check_files, load_mission
 from executive.engine.sources import read_source
 from executive.engine.validation import validate
@@ -102,7 +102,7 @@ def test_children_may_stand_in_a_plain_list():
 def test_file_is_named_like_what_is_in_it(tmp_path):
     file = tmp_path / "other.yaml"
     file.write_text(HEAD + "root: {when: true}")
-    library = Library(toy_types(), [tmp_path])
+    library = Library(Shelf(toy_types()), [tmp_path])
     library.document(file)
     assert "tree 't' is in a file named 'other'" in str(library.faults[0])
 
