@@ -21,6 +21,7 @@ _COMMANDS: Mapping[str, str] = MappingProxyType(
     {
         "run": "executive.cli.cmd_run",
         "check": "executive.cli.cmd_check",
+        "lint": "executive.cli.cmd_lint",
         "inspect": "executive.cli.cmd_inspect",
         "ticks": "executive.cli.cmd_ticks",
         "why": "executive.cli.cmd_why",

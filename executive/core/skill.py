@@ -94,6 +94,7 @@ class Skill(ABC):
     OUT: ClassVar[Mapping[str, Port]] = MappingProxyType({})
     REASONS: ClassVar[frozenset[str]] = frozenset()
     ACTS: ClassVar[bool] = False
+    REPEATABLE: ClassVar[bool] = True
 
     _generator: SkillRun | None = None
 
