@@ -89,6 +89,8 @@ class Skill(ABC):
         OUT: Output ports by name; `success(name=value)` must give each of them.
         REASONS: Every code that `failure` may carry.
         ACTS: Whether it moves something in the cell; run reports list it under actions.
+        REPEATABLE: Whether a tree may run it again after it has ended; `cellwright lint` holds
+            loops to it.
     """
 
     OUT: ClassVar[Mapping[str, Port]] = MappingProxyType({})
