@@ -48,23 +48,35 @@ class Parallel(Composite):
     def tick(self) -> Iterator[Behaviour]:
         """Tick the children that have not finished, then decide."""
         if self.status is not Status.RUNNING:
-            self._verdict = None
-            for child in self.children:
-                if child.status is not Status.INVALID:
-                    child.stop(Status.INVALID)
+            self.begin()
+            self._stop([child for child in self.children if child.status is not Status.INVALID])
         for child in self.children:
             if child.status not in (Status.SUCCESS, Status.FAILURE):
                 yield from child.tick()
+        status = self.decide()
+        if status is Status.RUNNING:
+            self.status = status
+        else:
+            self._stop([child for child in self.children if child.status is Status.RUNNING])
+            self.stop(status)
+        yield self
+
+    def begin(self) -> None:
+        """Forget what was decided."""
+        self._verdict = None
+
+    def decide(self) -> Status:
+        """Return the answer of a tick in which every child has had its turn."""
         self._verdict = self._verdict or self._decide()
         running = [child for child in self.children if child.status is Status.RUNNING]
         self.current_child = running[0] if running else self.children[-1]
-        if self._verdict is None or (self._wait and running):
-            self.status = Status.RUNNING
-        else:
-            for child in running:
-                child.stop(Status.INVALID)
-            self.stop(self._verdict)
-        yield self
+        return (
+            Status.RUNNING if self._verdict is None or (self._wait and running) else self._verdict
+        )
+
+    def _stop(self, children: Sequence[Behaviour]) -> None:
+        for child in children:
+            child.stop(Status.INVALID)
 
     def _decide(self) -> Status | None:
         statuses = [child.status for child in self.children]

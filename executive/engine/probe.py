@@ -1,12 +1,13 @@
 """Ticks a tree once and says what that changed.
 
-Statuses are compared after the tick over all nodes of the table, not only over those that
-were visited: a node that another one halts is never visited (trap e16).
+Only what can have changed is looked at: nodes that answered, nodes that were stopped (one that
+another node halts is never visited, trap e16), and nodes below those that py_trees ticks by
+itself. What happens between ticks is seen by `record_end`.
 """
 
 import time
 import traceback
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status as TreeStatus
@@ -14,6 +15,8 @@ from py_trees.common import Status as TreeStatus
 from executive.core.errors import NodeError
 from executive.core.outcome import Outcome, Reason
 from executive.engine.builder import BuiltTree
+from executive.engine.direct import Event
+from executive.engine.ticking import NODE_STATUS, DirectTicks
 from executive.engine.ticks import (
     RUNNER,
     Halt,
@@ -25,7 +28,10 @@ from executive.engine.ticks import (
 
 # What py_trees makes of `update` returning None or a word (trap e13).
 _NO_ANSWER = "update() gave no status; expected Status.RUNNING, SUCCESS or FAILURE"
-_STATUS = {status: NodeStatus(status.value) for status in TreeStatus}
+INVALID, RUNNING = NodeStatus.INVALID, NodeStatus.RUNNING
+
+
+_Moves = tuple[tuple[int, ...], tuple[tuple[int, NodeStatus], ...], tuple[Halt, ...]]
 
 
 class TreeProbe:
@@ -35,23 +41,33 @@ class TreeProbe:
         """Begin with what the nodes are before the first tick."""
         self._tree = tree
         self.behaviours: tuple[Behaviour, ...] = tuple(node.behaviour for node in tree.nodes)
+        self._direct = DirectTicks(tree.root, self.behaviours)
         self._index = {id(behaviour): i for i, behaviour in enumerate(self.behaviours)}
         self._parents = tuple(node.parent for node in tree.nodes)
-        self._before = [TreeStatus.INVALID] * len(self.behaviours)
-        self._answers: dict[int, TreeStatus] = {}
-        self._told: dict[int, tuple[int, TreeStatus, str]] = {}
+        self._statuses = [INVALID] * len(self.behaviours)
+        self._events: list[Event] = []
+        self._visited: tuple[int, ...] = ()
+        self._plain = False
+        # Other inner nodes never decide anything themselves.
+        self._speaks = tuple(
+            not behaviour.children or hasattr(behaviour, "outcome") for behaviour in self.behaviours
+        )
+        self._told: dict[int, tuple[int, NodeStatus, Reason | None]] = {}
         self.reasons: dict[int, Reason] = {}
         self.raised: Behaviour | None = None
 
     @property
     def answer(self) -> NodeStatus:
         """What the root answered in the last tick."""
-        return _STATUS[self._tree.root.status]
+        return NODE_STATUS[self._tree.root.status]
 
     @property
     def answers(self) -> dict[int, NodeStatus]:
         """What each node that was visited in the last tick answered, by index, in order."""
-        return {node: _STATUS[status] for node, status in self._answers.items()}
+        broken = {self._index.get(id(node)) for node in self._direct.log.broken}
+        return {
+            node: status for node, status in self._events if status is not INVALID or node in broken
+        }
 
     def tick(self, number: int, time_s: float) -> tuple[Tick, NodeError | None]:
         """Tick the tree once.
@@ -59,97 +75,98 @@ class TreeProbe:
         Returns:
             What it changed, and the error when a node raised.
         """
+        log, error = self._direct.log, None
         began_s = time.perf_counter()
-        self._answers, error = {}, None
-        outcomes: list[NodeOutcome] = []
         try:
-            for behaviour in self._tree.root.tick():
-                node, status = self._index.get(id(behaviour)), behaviour.status
-                if status is TreeStatus.INVALID and error is None:
-                    error = self.error_of(behaviour, number, TypeError(_NO_ANSWER))
-                if node is not None:
-                    self._answers[node] = status
-                    if status is not TreeStatus.RUNNING:
-                        outcomes += self._outcome(node, behaviour)
+            self._direct.tick()
         except BaseException as cause:
-            raising = self._remember_raising(cause)
+            raising = self._remember_raising()
             if not isinstance(cause, Exception):
                 raise
             error = self.error_of(raising, number, cause)
         duration_s = time.perf_counter() - began_s
+        if log.broken and error is None:
+            error = self.error_of(log.broken[0], number, TypeError(_NO_ANSWER))
         faults = () if error is None else (fault_of(error),)
-        return self._record(number, time_s, duration_s, outcomes, faults), error
+        return self._record(number, time_s, duration_s, faults), error
 
     def record_end(self, number: int, time_s: float, errors: Sequence[Exception]) -> Tick:
         """Return what the runner stopped since the last tick, as a tick without visits."""
-        self._answers = {}
-        return self._record(number, time_s, 0.0, [], tuple(fault_of(error) for error in errors))
+        self._direct.log.clear()
+        self._look_everywhere()
+        return self._record(number, time_s, 0.0, tuple(fault_of(error) for error in errors))
 
     def _record(
-        self,
-        number: int,
-        time_s: float,
-        duration_s: float,
-        outcomes: Sequence[NodeOutcome],
-        faults: tuple[NodeFault, ...],
+        self, number: int, time_s: float, duration_s: float, faults: tuple[NodeFault, ...]
     ) -> Tick:
-        before, after = self._before, [behaviour.status for behaviour in self.behaviours]
-        self._before = after
+        if faults:
+            self._look_everywhere()
+        visited, changes, halts = self._moves()
         return Tick(
             number,
             time_s,
             duration_s,
-            visited=tuple(self._answers),
-            changes=tuple(
-                (node, _STATUS[new])
-                for node, (old, new) in enumerate(zip(before, after, strict=True))
-                if old is not new
-            ),
-            halts=self._halts(before, after),
-            outcomes=tuple(outcome for outcome in outcomes if self._is_news(number, outcome)),
+            visited=visited,
+            changes=changes,
+            halts=halts,
+            outcomes=tuple(self._outcomes(number)),
             writes=tuple(self._tree.blackboard.drain_writes()),
             faults=faults,
         )
 
-    def _halts(self, before: list[TreeStatus], after: list[TreeStatus]) -> tuple[Halt, ...]:
-        """Return the nodes that ran, in this tick or the last, and were stopped since."""
-        running, invalid = TreeStatus.RUNNING, TreeStatus.INVALID
-        return tuple(
-            Halt(node, self._halted_by(node, after))
-            for node, status in enumerate(after)
-            if status is invalid and self._answers.get(node, before[node]) is running
-        )
+    def _look_everywhere(self) -> None:
+        self._direct.log.unseen.update(range(len(self.behaviours)))
 
-    def _halted_by(self, node: int, after: list[TreeStatus]) -> int:
+    def _moves(self) -> _Moves:
+        """Return visits, changes and halts of the tick that the log is about."""
+        log = self._direct.log
+        if self._plain and not log.unseen and log.events == self._events:
+            return self._visited, (), ()  # the same answers as in the tick before
+        self._events = events = log.events.copy()
+        after = dict(events)
+        once = len(after) == len(events) and INVALID not in after.values()
+        self._plain = once and not log.unseen
+        answers = after.copy() if once else self.answers
+        self._visited = tuple(answers)
+        after.update((i, NODE_STATUS[self.behaviours[i].status]) for i in log.unseen)
+        before = self._statuses
+        halted = [
+            i
+            for i, status in after.items()
+            if status is INVALID and answers.get(i, before[i]) is RUNNING
+        ]
+        changes = sorted((i, status) for i, status in after.items() if before[i] is not status)
+        for i, status in changes:
+            before[i] = status
+        halts = tuple(Halt(i, self._halted_by(i)) for i in sorted(halted))
+        return self._visited, tuple(changes), halts
+
+    def _halted_by(self, node: int) -> int:
         parent = self._parents[node]
-        while parent is not None and after[parent] is TreeStatus.INVALID:
+        while parent is not None and self._statuses[parent] is INVALID:
             parent = self._parents[parent]
         return RUNNER if parent is None else parent
 
-    def _outcome(self, node: int, behaviour: Behaviour) -> list[NodeOutcome]:
-        """Return how a node ended, if it decided that itself."""
-        outcome = getattr(behaviour, "outcome", None)
-        reason = outcome.reason if isinstance(outcome, Outcome) else None
-        if behaviour.children and reason is None and node not in self.reasons:
-            return []
-        if reason is None:
-            self.reasons.pop(node, None)
-        else:
-            self.reasons[node] = reason
-        return [NodeOutcome(node, _STATUS[behaviour.status], reason)]
-
-    def _is_news(self, number: int, outcome: NodeOutcome) -> bool:
-        """Return whether the node did not end the same way in the tick before.
+    def _outcomes(self, number: int) -> Iterator[NodeOutcome]:
+        """Return how nodes ended that decided it themselves, unless that is no news.
 
         Conditions of a reactive branch answer the same in every tick; only their first
         answer is worth a record, the visits tell the rest.
         """
-        said = (outcome.status, str(outcome.reason))
-        last = self._told.get(outcome.node)
-        self._told[outcome.node] = (number, *said)
-        return last is None or last != (number - 1, *said)
+        for node, status in self._events:
+            if not self._speaks[node] or status is RUNNING or status is INVALID:
+                continue
+            outcome = getattr(self.behaviours[node], "outcome", None)
+            reason = outcome.reason if isinstance(outcome, Outcome) else None
+            if reason is not None:
+                self.reasons[node] = reason
+            elif self.reasons.pop(node, None) is None and self.behaviours[node].children:
+                continue
+            last, self._told[node] = self._told.get(node), (number, status, reason)
+            if last is None or last[:2] != (number - 1, status) or not _alike(last[2], reason):
+                yield NodeOutcome(node, status, reason)
 
-    def error_of(self, behaviour: Behaviour, number: int, cause: Exception) -> NodeError:
+    def error_of(self, behaviour: Behaviour, number: int, cause: BaseException) -> NodeError:
         """Return what a node raised, with the path and type of the node and the tick."""
         if isinstance(cause, NodeError):
             return cause
@@ -158,10 +175,11 @@ class TreeProbe:
             return NodeError(behaviour.name, type(behaviour).__name__, number, cause)
         return NodeError(self._tree.nodes[node].path, self._tree.nodes[node].type, number, cause)
 
-    def _remember_raising(self, cause: BaseException) -> Behaviour:
+    def _remember_raising(self) -> Behaviour:
         """Return the node that raised, and remember it if it still has to be stopped."""
-        behaviour, terminating = _raising_node(cause, self._tree.root)
-        if terminating:
+        log = self._direct.log
+        behaviour = log.raised or self._tree.root
+        if log.terminating:
             # It has had its one call; the status says that to whoever stops the rest.
             behaviour.status = TreeStatus.INVALID
         else:
@@ -169,19 +187,10 @@ class TreeProbe:
         return behaviour
 
 
-def _raising_node(cause: BaseException, root: Behaviour) -> tuple[Behaviour, bool]:
-    """Return the innermost node whose method raised, and whether it was in `terminate`.
-
-    Composites call their children inside generators, so the exception itself does not say
-    which node it came from (trap e1); the traceback does.
-    """
-    found, terminating = root, False
-    for frame, _ in traceback.walk_tb(cause.__traceback__):
-        caller = frame.f_locals.get("self")
-        if isinstance(caller, Behaviour):
-            terminating = frame.f_code.co_name == "terminate" or (terminating and caller is found)
-            found = caller
-    return found, terminating
+def _alike(one: Reason | None, other: Reason | None) -> bool:
+    if one is None or other is None:
+        return one is other
+    return (one.code, one.text) == (other.code, other.text)
 
 
 def fault_of(error: Exception) -> NodeFault:
