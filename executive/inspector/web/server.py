@@ -48,7 +48,8 @@ def application(
         Route("/api/run", answers.run),
         Route("/api/lanes", answers.lanes),
         Route("/api/tick/{number:int}", answers.tick),
-        Route("/api/value", answers.value),
+        Route("/api/ask", answers.ask),
+        Route("/api/who", answers.who),
         Route("/api/history", answers.history),
         Route("/api/find", answers.find),
         Route("/api/image/{number:int}.png", answers.image),
@@ -96,9 +97,13 @@ class _Answers:
     async def tick(self, request: Request) -> Response:
         return _json(await run_in_threadpool(self._session.tick, request.path_params["number"]))
 
-    async def value(self, request: Request) -> Response:
+    async def ask(self, request: Request) -> Response:
+        node, tick = request.query_params.get("node", ""), _whole(request, "tick")
+        return _json({"answers": await run_in_threadpool(self._session.answers, node, tick)})
+
+    async def who(self, request: Request) -> Response:
         key, tick = request.query_params.get("key", ""), _whole(request, "tick")
-        return _json(await run_in_threadpool(self._session.value, key, tick))
+        return _json(await run_in_threadpool(self._session.who, key, tick))
 
     async def history(self, request: Request) -> Response:
         key = request.query_params.get("key", "")

@@ -10,11 +10,16 @@ from typing import Any
 from executive.core.errors import InputError
 from executive.core.registry import closest
 from executive.engine.recording.reader import KeyState, Recording
+from executive.engine.ticks import NodeStatus
+from executive.inspector.answer_view import answer_document, written_document
 from executive.inspector.brief import brief
-from executive.inspector.index import RunIndex
 from executive.inspector.overlays import picture_of
+from executive.inspector.past import PastRun
+from executive.inspector.provenance import who_wrote
 from executive.inspector.web.activity import Activity, Codes
 from executive.inspector.web.finding import Wish, found
+from executive.inspector.why import why, why_ended
+from executive.inspector.why_not import why_halted, why_not
 
 
 class Session:
@@ -31,7 +36,7 @@ class Session:
         self._size = -1
         self._recording = Recording.open(path)
         self._activity = Activity(len(self._recording.header.nodes))
-        self._index = RunIndex(self._recording)
+        self._past: PastRun | None = None
         self.refresh()
 
     @property
@@ -96,10 +101,13 @@ class Session:
         Raises:
             InputError: There is no such tick.
         """
+        self._check(number)
+        return self._tick_document(number)
+
+    def _check(self, number: int) -> None:
         count = len(self._recording)
         if not 0 <= number < count:
             raise InputError(f"no tick {number}; expected 0 to {count - 1}")
-        return self._tick_document(number)
 
     @lru_cache(maxsize=512)  # noqa: B019 - a session lives as long as the server
     def _tick_document(self, number: int) -> dict[str, Any]:
@@ -128,7 +136,7 @@ class Session:
         Raises:
             InputError: Nothing ever wrote it.
         """
-        index = self.index()
+        index = self.past().index
         places = index.writes.get(key)
         if places is None:
             raise InputError(f"nothing writes {key!r}; {closest(key, [*index.writes])}")
@@ -144,27 +152,45 @@ class Session:
         Raises:
             InputError: It names what the recording does not have.
         """
-        return found(self.index(), wish)
+        return found(self.past().index, wish)
 
-    def index(self) -> RunIndex:
-        """Return what happened when, as far as the recording has been read."""
-        with self._lock:
-            if len(self._index) != len(self._recording):
-                self._index = RunIndex(self._recording)
-            return self._index
+    def answers(self, path: str, tick: int) -> list[dict[str, object]]:
+        """Return why a node did what it did in a tick, or why it did not run, or who halted it.
 
-    def value(self, key: str, number: int) -> dict[str, object]:
-        """Return one value in full, with its history.
+        Raises:
+            InputError: There is no such node or tick.
+        """
+        run = self.past()
+        node = run.names.node(path)
+        self._check(tick)
+        if tick in run.index.halts and run.index.halted_by(node, tick) is not None:
+            answers = [why_halted(run, node, tick)]
+        elif run.index.answer(node, tick) is NodeStatus.INVALID:
+            answers = [why_not(run, node, tick)]
+        else:
+            answers = [why(run, node, tick)]
+        if self.ended and tick >= run.index.last_tick and node == 0:
+            answers.insert(0, why_ended(run))
+        return [answer_document(run, answer) for answer in answers]
+
+    def who(self, key: str, tick: int) -> dict[str, object]:
+        """Return who wrote a key last before a tick, what it was before, and who read it.
 
         Raises:
             InputError: Nothing had written the key by then.
         """
+        run = self.past()
+        written = who_wrote(run, run.names.key(key), tick)
+        if written is None:
+            raise InputError(f"{key!r} has no value at tick {tick}")
+        return written_document(run, written)
+
+    def past(self) -> PastRun:
+        """Return the run as questions need it, as far as the recording has been read."""
         with self._lock:
-            states = self._recording.blackboard(number)
-        if key not in states:
-            raise InputError(f"{key!r} has no value at tick {number}")
-        state = states[key]
-        return {"key": key, "value": state.value, "writer": state.writer, "tick": state.tick}
+            if self._past is None or len(self._past.index) != len(self._recording):
+                self._past = PastRun(self._recording)
+            return self._past
 
     def image(self, number: int) -> bytes:
         """Return an image as a PNG file.

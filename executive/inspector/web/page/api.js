@@ -15,10 +15,10 @@ const query = (values) => new URLSearchParams(values).toString();
 
 export const getRun = () => json("api/run");
 export const getTick = (number) => json(`api/tick/${number}`);
-export const getValue = (key, tick) => json(`api/value?${query({ key, tick })}`);
+export const getWho = (key, tick) => json(`api/who?${query({ key, tick })}`);
 export const getHistory = (key) => json(`api/history?${query({ key })}`);
 export const getReport = () => json("api/report");
-export const ask = (question, node, tick) => json(`api/ask?${query({ question, node, tick })}`);
+export const ask = (node, tick) => json(`api/ask?${query({ node, tick })}`);
 export const find = (values) => json(`api/find?${query(values)}`);
 
 export async function getLanes(from, to, columns) {

@@ -1,6 +1,6 @@
 // The blackboard after a tick: what each key holds, who wrote it and when.
 
-import { getHistory, getValue } from "./api.js";
+import { getWho } from "./api.js";
 import { change, onChange, store } from "./store.js";
 
 const states = document.getElementById("states");
@@ -38,18 +38,26 @@ function drawStates() {
     `${rows.length} of ${store.doc.board.length} keys; bold: written in this tick`;
 }
 
+// Who wrote the selected key, what it was before, who has read it since, and all of its value.
 async function drawValue() {
   value.hidden = !store.key;
   if (!store.key) return;
   const [key, tick] = [store.key, store.tick];
   try {
-    const [found, history] = await Promise.all([getValue(key, tick), getHistory(key)]);
+    const found = await getWho(key, tick);
     if (key !== store.key || tick !== store.tick) return;
-    const writes = history.writes.filter((write) => write.tick <= tick);
-    const before = writes.length > 1 ? `\nbefore   ${writes.at(-2).value}  (tick ${writes.at(-2).tick})` : "";
-    value.textContent =
-      `${key}\nwritten  at tick ${found.tick} by ${found.writer || "the mission's input"}; ` +
-      `${history.writes.length} writes in all${before}\n${JSON.stringify(found.value, null, 1)}`;
+    const by = (write) => `${write.writer ? tail(write.writer) : "an input of the mission"}, tick ${write.tick}`;
+    const readers = found.readers.filter((reader) => reader.ticks.length);
+    const lines = [
+      key,
+      `written by ${by(found)}; kept until ${found.until_tick ?? "the end"}`,
+      found.previous ? `before: ${JSON.stringify(found.previous.value)?.slice(0, 200)} by ${by(found.previous)}` : "it had no value before",
+      readers.length
+        ? `read by ${readers.map((reader) => `${tail(reader.path)} @${reader.ticks.slice(0, 4).join(" @")}`).join(", ")}`
+        : "nothing has read it since",
+      JSON.stringify(found.value, null, 1),
+    ];
+    value.textContent = lines.join("\n");
   } catch (error) {
     value.textContent = error.message;
   }

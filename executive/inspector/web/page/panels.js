@@ -1,9 +1,8 @@
 // The panels of text, and the 3-D scene.
 
 import { ask, getReport } from "./api.js";
-import { onChange, store } from "./store.js";
+import { change, MARKS, onChange, store } from "./store.js";
 
-const QUESTIONS = ["why", "why-not", "why-halted"];
 const panel = (name) => document.getElementById(name);
 
 let open = "picture";
@@ -39,23 +38,42 @@ function refresh() {
 async function drawAnswers() {
   const [node, tick] = [store.node, store.tick];
   const { path } = store.run.nodes[node];
-  const answers = await Promise.all(QUESTIONS.map((question) => ask(question, path, tick).catch((error) => ({ error }))));
-  if (node !== store.node || tick !== store.tick) return;
-  const faults = store.doc.faults.map((fault) => block(`${fault.path || "cell"}: ${fault.message}`, fault.traceback));
-  panel("why").replaceChildren(line("p", "quiet", `${path} at tick ${tick}`), ...faults,
-    ...answers.filter((answer) => !answer.error).map((answer) => told(answer.lines)));
-  const said = answers.find((answer) => answer.error);
-  if (answers.every((answer) => answer.error)) panel("why").append(line("p", "quiet", said.error.message));
+  const shown = [line("p", "quiet", `${path} at tick ${tick}`)];
+  shown.push(...store.doc.faults.map((fault) => block(`${fault.path || "cell"}: ${fault.message}`, fault.traceback)));
+  try {
+    const { answers } = await ask(path, tick);
+    shown.push(...answers.map(told));
+  } catch (error) {
+    shown.push(line("p", "quiet", error.message));
+  }
+  if (node === store.node && tick === store.tick) panel("why").replaceChildren(...shown);
 }
 
-function told([first, ...rest]) {
+// The headline, then the way from the root down; each step leads to its node and tick.
+function told(answer) {
   const section = document.createElement("section");
-  section.append(line("p", "answer", first));
-  const list = document.createElement("ul");
-  list.className = "chain";
-  list.append(...rest.map((text) => line("li", "", text)));
-  section.append(list);
+  section.append(line("p", "answer", answer.answer), ...answer.notes.map((note) => line("p", "quiet", note)));
+  for (const { title, steps } of answer.sections) {
+    const list = document.createElement("ul");
+    list.className = "chain";
+    list.append(...steps.map(step));
+    section.append(line("p", "quiet", `${title}:`), list);
+  }
   return section;
+}
+
+function step({ path, text, status, file, line: number, tick }) {
+  const item = line("li", "", "");
+  if (path === null) {
+    item.append(line("b", "", "the runner "), text);
+    return item;
+  }
+  const node = store.run.nodes.findIndex((one) => one.path === path);
+  const name = line("a", status, `${MARKS[status]} ${path.slice(path.lastIndexOf("/") + 1)}`);
+  name.href = "#";
+  name.onclick = (event) => { event.preventDefault(); change({ node, tick }); };
+  item.append(name, ` ${text} `, line("span", "quiet", `${file.slice(file.lastIndexOf("/") + 1)}:${number}`));
+  return item;
 }
 
 function block(title, text) {
