@@ -22,6 +22,7 @@ _COMMANDS: Mapping[str, str] = MappingProxyType(
         "run": "executive.cli.cmd_run",
         "check": "executive.cli.cmd_check",
         "lint": "executive.cli.cmd_lint",
+        "fmt": "executive.cli.cmd_fmt",
         "inspect": "executive.cli.cmd_inspect",
         "ticks": "executive.cli.cmd_ticks",
         "why": "executive.cli.cmd_why",
