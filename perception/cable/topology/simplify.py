@@ -5,9 +5,24 @@ number of crossings are searched breadth first for a diagram from which one save
 """
 
 from collections import deque
+from collections.abc import Sequence
+from dataclasses import dataclass
 
 from perception.cable.topology.diagram import Diagram, compact
-from perception.cable.topology.passes import reroutes, runs
+from perception.cable.topology.passes import Run, reroutes, runs
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """One pass move.
+
+    Attributes:
+        run: What is lifted off the diagram before.
+        after: The diagram after; its first visits are the way that the run was laid along.
+    """
+
+    run: Run
+    after: Diagram
 
 
 def simplify(diagram: Diagram, states: int = 200) -> Diagram:
@@ -17,47 +32,61 @@ def simplify(diagram: Diagram, states: int = 200) -> Diagram:
         diagram: A diagram that can be drawn on the sphere.
         states: How many diagrams of equal size are looked at before giving up.
     """
-    smaller: Diagram | None = shorten(diagram)
-    while smaller is not None:
-        diagram = smaller
-        smaller = _escape(diagram, states)
-    return diagram
+    return _last(diagram, simplification(diagram, states))
+
+
+def simplification(diagram: Diagram, states: int = 200) -> tuple[Step, ...]:
+    """Return the moves that lead to as few crossings as the search finds; see `simplify`."""
+    steps = _shortening(diagram)
+    while more := _escape(_last(diagram, steps), states):
+        steps += more
+    return tuple(steps)
 
 
 def shorten(diagram: Diagram) -> Diagram:
     """Return the diagram after every pass move that saves crossings."""
-    shorter: Diagram | None = diagram
-    while shorter is not None:
-        diagram = shorter
-        shorter = _shorter(diagram)
-    return diagram
+    return _last(diagram, _shortening(diagram))
 
 
-def _shorter(diagram: Diagram) -> Diagram | None:
-    """Return the diagram after one move that saves crossings; None where there is none."""
+def _last(diagram: Diagram, steps: Sequence[Step]) -> Diagram:
+    return steps[-1].after if steps else diagram
+
+
+def _shortening(diagram: Diagram) -> list[Step]:
+    """Return moves that save crossings, until none is left."""
+    steps: list[Step] = []
+    while (step := _shorter(_last(diagram, steps))) is not None:
+        steps.append(step)
+    return steps
+
+
+def _shorter(diagram: Diagram) -> Step | None:
+    """Return one move that saves crossings; None where there is none."""
     for run in sorted(runs(diagram), key=lambda run: -run.length):
         candidate = reroutes(diagram, run)[0]
         if len(candidate) < len(diagram):
-            return candidate
+            return Step(run, candidate)
     return None
 
 
-def _escape(diagram: Diagram, states: int) -> Diagram | None:
-    """Return a smaller diagram behind moves that save nothing themselves."""
-    seen, queue = {_canonical(diagram)}, deque([diagram])
+def _escape(diagram: Diagram, states: int) -> list[Step]:
+    """Return moves to a smaller diagram behind ones that save nothing; empty for none found."""
+    seen, queue = {_canonical(diagram)}, deque[list[Step]]([[]])
     while queue and len(seen) < states:
-        current = queue.popleft()
+        steps = queue.popleft()
+        current = _last(diagram, steps)
         for run in runs(current):
             for neighbour in reroutes(current, run, limit=4):
                 name = _canonical(neighbour)
                 if name in seen:
                     continue
                 seen.add(name)
+                ahead = [*steps, Step(run, neighbour)]
                 smaller = _shorter(neighbour)
                 if smaller is not None:
-                    return shorten(smaller)
-                queue.append(neighbour)
-    return None
+                    return [*ahead, smaller, *_shortening(smaller.after)]
+                queue.append(ahead)
+    return []
 
 
 def _canonical(diagram: Diagram) -> Diagram:

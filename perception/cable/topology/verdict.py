@@ -67,10 +67,15 @@ def classify_diagram(diagram: Diagram, crossings: int | None = None) -> Verdict:
         diagram: The diagram; one that cannot be drawn in the plane stays undecided.
         crossings: How many crossings to report as seen; the diagram's own by default.
     """
+    reduced = simplify(diagram) if diagram.is_planar() else None
+    return judge(diagram, reduced, crossings)
+
+
+def judge(diagram: Diagram, reduced: Diagram | None, crossings: int | None = None) -> Verdict:
+    """Return the verdict on a diagram from what it was reduced to, None for not at all."""
     seen = len(diagram) if crossings is None else crossings
-    if not diagram.is_planar():
+    if reduced is None:
         return Verdict(Knottedness.UNDECIDED, Proof.NONE, seen, len(diagram))
-    reduced = simplify(diagram)
     state, proof = _decide(reduced)
     return Verdict(state, proof, seen, len(reduced))
 

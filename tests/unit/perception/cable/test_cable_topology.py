@@ -33,7 +33,7 @@ def figure_8_knot(count: int = 300) -> np.ndarray:
 
 def turned(nodes: np.ndarray, rng: np.random.Generator) -> np.ndarray:
     """The closed curve seen from another side; the gap of the cut is closed first."""
-    closed = np.vstack([nodes, nodes[0] + 1e-3 * (nodes[-1] - nodes[0])])
+    closed = np.vstack([nodes, nodes[0] + 1e-6 * (nodes[-1] - nodes[0])])
     rotation, _ = np.linalg.qr(rng.normal(size=(3, 3)))
     rotation[:, 0] *= np.linalg.det(rotation)
     return closed @ rotation
