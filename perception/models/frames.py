@@ -19,16 +19,23 @@ class ScaledImage:
 
     Attributes:
         pixels: Grey values, shape (H, W).
-        scale: Its size over that of the original.
+        scale: Its size, in its own units, over that of the original.
         fill: Grey value beyond its border.
+        zoom: Pixels a unit, along each axis.
     """
 
     pixels: GreyImage
     scale: float
     fill: float
+    zoom: float = 1.0
+
+    @property
+    def size(self) -> Floats:
+        """Width and height [units], shape (2,)."""
+        return np.array(self.pixels.shape[::-1]) / self.zoom
 
     def into(self, points_px: Floats) -> Floats:
-        """Return points of the original image in this one; pixel centres are whole numbers."""
+        """Return points of the original image in this one; centres of units are whole numbers."""
         return (points_px + 0.5) * self.scale - 0.5
 
     def back(self, points: Floats) -> Floats:
@@ -37,16 +44,23 @@ class ScaledImage:
 
     def holds(self, point: Floats) -> bool:
         """Say whether a point of this image lies within it."""
-        rows, columns = self.pixels.shape
-        return bool(0.0 <= point[0] < columns and 0.0 <= point[1] < rows)
+        return bool((point >= 0.0).all() and (point < self.size).all())
 
 
-def scale_image(image: GreyImage, width_px: float, wanted_px: float) -> ScaledImage:
-    """Scale an image so that a cable of `width_px` pixels becomes `wanted_px` pixels wide."""
-    scale = wanted_px / width_px
-    how = cv2.INTER_AREA if scale < 1.0 else cv2.INTER_LINEAR
-    pixels = cv2.resize(image, None, fx=scale, fy=scale, interpolation=how).astype(np.uint8)
-    return ScaledImage(pixels, scale, float(np.median(pixels[::4, ::4])))
+def scale_image(image: GreyImage, width_px: float, wanted: float, zoom: float = 1.0) -> ScaledImage:
+    """Scale an image so that a cable of `width_px` pixels becomes `wanted` units wide.
+
+    Args:
+        image: Grey image.
+        width_px: Width of the cable in it.
+        wanted: Width that the network knows.
+        zoom: Pixels a unit; more than one keep detail of the original.
+    """
+    scale = wanted / width_px
+    how = cv2.INTER_AREA if zoom * scale < 1.0 else cv2.INTER_LINEAR
+    pixels = cv2.resize(image, None, fx=zoom * scale, fy=zoom * scale, interpolation=how)
+    grey = pixels.astype(np.uint8)
+    return ScaledImage(grey, scale, float(np.median(grey[::4, ::4])), zoom)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -78,11 +92,15 @@ def turned_frame(here: Floats, heading: Floats, place: tuple[float, float]) -> C
     return CropFrame(turn, np.asarray(place) - turn @ here)
 
 
-def cut(scaled: ScaledImage, frame: CropFrame, size_px: int) -> Crop:
-    """Return the grey values of a square crop."""
+def cut(scaled: ScaledImage, frame: CropFrame, size: int) -> Crop:
+    """Return the grey values of a square crop, `size` units wide, as finely as they are known."""
+    size_px = round(size * scaled.zoom)
+    # Pixels have their centres at ((k + 0.5) / zoom - 0.5) units, in image and crop.
+    middle = 0.5 * (scaled.zoom - 1.0)
+    shift_px = scaled.zoom * frame.shift + middle - frame.turn @ np.array([middle, middle])
     grey = cv2.warpAffine(
         scaled.pixels,
-        np.column_stack([frame.turn, frame.shift]),
+        np.column_stack([frame.turn, shift_px]),
         (size_px, size_px),
         flags=cv2.INTER_LINEAR,
         borderMode=cv2.BORDER_CONSTANT,

@@ -14,9 +14,9 @@ from perception.models.crossing_net import CrossingNet
 from perception.models.tracer_net import TracerNet
 
 FOLDER = Path(__file__).parent
-NETWORKS: dict[str, Callable[[Sequence[int]], nn.Module]] = {
+NETWORKS: dict[str, Callable[[Sequence[int], float], nn.Module]] = {
     "tracer": TracerNet,
-    "crossing": CrossingNet,
+    "crossing": lambda widths, _: CrossingNet(widths),
 }
 
 
@@ -27,6 +27,7 @@ class ModelConfig(BaseModel):
         network: Which network.
         widths: Its numbers of channels.
         temperature: What its logits are divided by, from held-out data.
+        zoom: Pixels of a crop a unit of `perception.models.frames`.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -34,6 +35,7 @@ class ModelConfig(BaseModel):
     network: str
     widths: tuple[int, ...]
     temperature: float = 1.0
+    zoom: float = 1.0
 
 
 def read_config(folder: Path) -> ModelConfig:
@@ -54,7 +56,7 @@ def load_network(folder: Path) -> nn.Module:
             f"{folder / 'config.json'}: network: unknown; got {config.network!r}; "
             f"expected one of the networks (known: {known})"
         )
-    network = NETWORKS[config.network](config.widths)
+    network = NETWORKS[config.network](config.widths, config.zoom)
     network.load_state_dict(load_file(folder / "weights.safetensors"))
     network.eval()
     _fold(network)

@@ -6,10 +6,9 @@ import torch
 from torch import Tensor, nn
 
 from perception.models.blocks import Down, Up, conv
-from perception.models.tracer_crop import SIZE
+from perception.models.tracer_crop import CELL, SIZE
 
 CROP_CHANNELS = 3
-STRIDE = 2
 HORIZONS = 3
 
 
@@ -21,13 +20,15 @@ class TracerNet(nn.Module):
 
     Args:
         widths: Number of channels at each of four resolutions, finest first.
+        zoom: Pixels of a crop a unit.
     """
 
-    def __init__(self, widths: Sequence[int]) -> None:
+    def __init__(self, widths: Sequence[int], zoom: float = 1.0) -> None:
         super().__init__()
         first, second, third, last = widths
-        self.unshuffle = nn.PixelUnshuffle(STRIDE)
-        self.stem = nn.Sequential(conv(CROP_CHANNELS * STRIDE * STRIDE, first), conv(first, first))
+        stride = round(CELL * zoom)
+        self.unshuffle = nn.PixelUnshuffle(stride)
+        self.stem = nn.Sequential(conv(CROP_CHANNELS * stride * stride, first), conv(first, first))
         self.down1, self.down2, self.down3 = (
             Down(first, second),
             Down(second, third),
@@ -35,7 +36,7 @@ class TracerNet(nn.Module):
         )
         self.up3, self.up2, self.up1 = Up(last, third), Up(third, second), Up(second, first)
         self.heat = nn.Conv2d(first, HORIZONS, 1)
-        coarse = SIZE // (8 * STRIDE)
+        coarse = SIZE // (8 * CELL)
         self.stop = nn.Linear(last * coarse * coarse, 1)
 
     def forward(self, crops: Tensor) -> tuple[Tensor, Tensor]:

@@ -36,7 +36,7 @@ def main(task: Task) -> None:
     figures = trainer.run()
     weights = trainer.average.module.state_dict()
     save_file(compact(weights), folder / "weights.safetensors")
-    _write(folder / "config.json", {"network": task.name, "widths": task.widths})
+    _write(folder / "config.json", {"network": task.name, "widths": task.widths, "zoom": task.zoom})
     _write(
         folder / "metrics.json",
         {"held_out": figures, "samples": trainer.seen, "hours": trainer.hours},

@@ -28,6 +28,7 @@ class CrossingTask:
 
     name = "crossing"
     widths: tuple[int, ...] = (16, 32, 64, 96)
+    zoom: float = 1.0
 
     def network(self) -> nn.Module:
         """Return a fresh network."""

@@ -1,34 +1,15 @@
-"""Centre lines of cables lying on a table, in three families, all lengths in cable widths."""
+"""Centre lines of cables lying on a table, in families, all lengths in cable widths."""
 
 from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import CubicSpline
 from scipy.ndimage import gaussian_filter1d
 
+from perception.training.settled import settled_curve
+from perception.training.waypoints import SPACING, resample, through
+
 Points = NDArray[np.float64]
-
-SPACING = 0.5
-
-
-def resample(points: Points, spacing: float = SPACING) -> Points:
-    """Return points at equal arc distances along a polyline, both ends kept."""
-    steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
-    along = np.concatenate([[0.0], np.cumsum(steps)])
-    count = max(round(float(along[-1]) / spacing) + 1, 2)
-    targets = np.linspace(0.0, along[-1], count)
-    return np.column_stack([np.interp(targets, along, axis) for axis in points.T])
-
-
-def through(waypoints: Points, stiffness: float) -> Points:
-    """Return a smooth curve near waypoints; `stiffness` is the length it is smoothed over."""
-    chords = np.linalg.norm(np.diff(waypoints, axis=0), axis=1)
-    at = np.concatenate([[0.0], np.cumsum(np.sqrt(chords) + 1e-6)])
-    fine = np.linspace(0.0, at[-1], 40 * len(waypoints))
-    curve = resample(CubicSpline(at, waypoints)(fine))
-    smooth = gaussian_filter1d(curve, stiffness / SPACING, axis=0, mode="nearest")
-    return resample(smooth)
 
 
 def random_curve(rng: np.random.Generator, extent: float) -> Points:
@@ -61,6 +42,66 @@ def dense_curve(rng: np.random.Generator, extent: float) -> Points:
         ),
         rng.uniform(0.4, 1.2),
     )
+
+
+def coil_curve(rng: np.random.Generator, extent: float) -> Points:
+    """Return a curve that winds round several times, as cable does that was rolled up.
+
+    Its turns cross at small angles, and touch without crossing.
+    """
+    turns = rng.uniform(1.3, 4.5)
+    angle = rng.uniform(0.0, 2.0 * np.pi) + np.arange(0.0, 2.0 * np.pi * turns, 0.45)
+    radius = extent * rng.uniform(0.06, 0.25)
+    wobble = gaussian_filter1d(rng.normal(size=len(angle)), rng.uniform(3.0, 9.0))
+    radii = radius * (1.0 + rng.uniform(0.05, 0.3) * wobble / max(float(wobble.std()), 1e-9))
+    wander = gaussian_filter1d(rng.normal(size=(len(angle), 2)), 8.0, axis=0)
+    wander *= radius * rng.uniform(0.05, 0.4) / max(float(wander.std()), 1e-9)
+    drift = np.linspace(0.0, 1.0, len(angle))[:, None] * rng.normal(0.0, 0.4 * radius, 2)
+    circle = np.column_stack([np.cos(angle), rng.uniform(0.6, 1.0) * np.sin(angle)])
+    middle = rng.uniform(0.3, 0.7, 2) * extent
+    coil = middle + radii.clip(2.0, None)[:, None] * circle + wander + drift
+    coil = coil[:: rng.choice([1, -1])]
+    leaving = [_leave(rng, coil[2] - coil[0], coil[0], extent)[::-1]]
+    leaving.append(_leave(rng, coil[-3] - coil[-1], coil[-1], extent))
+    return through(np.vstack([leaving[0], coil, leaving[1]]), rng.uniform(0.5, 1.5))
+
+
+def _leave(rng: np.random.Generator, inwards: Points, start: Points, extent: float) -> Points:
+    """Return waypoints that go on from a curve's end with its direction, then wander."""
+    heading = np.arctan2(-inwards[1], -inwards[0])
+    points = [start]
+    for _ in range(int(rng.integers(1, 6))):
+        heading += rng.normal(0.0, 0.7)
+        step = rng.uniform(0.06, 0.25) * extent
+        points.append(points[-1] + step * np.array([np.cos(heading), np.sin(heading)]))
+    return np.array(points[1:])
+
+
+def tight_curve(rng: np.random.Generator, extent: float) -> Points:
+    """Return a curve with a knot pulled tight, strands on strands, or a bundle of hairpins."""
+    middle = rng.uniform(0.3, 0.7, 2) * extent
+    size = rng.uniform(1.8, 5.5)
+    turn = rng.uniform(0.0, 2.0 * np.pi)
+    rotation = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
+    inner = _template(rng) if rng.random() < 0.5 else _hairpins(rng)
+    stretch = np.array([rng.uniform(1.0, 2.2), rng.uniform(0.35, 1.0)]) * size
+    knot = (inner * stretch) @ rotation.T + middle
+    knot += rng.normal(0.0, 0.05 * size, knot.shape)
+    # A knot that is pulled tight bends the cable less far away from it.
+    head, tail = (_leave(rng, knot[a] - knot[b], knot[b], extent) for a, b in ((2, 0), (-3, -1)))
+    return through(np.vstack([head[::-1], knot, tail]), rng.uniform(0.35, 0.8))
+
+
+def _hairpins(rng: np.random.Generator) -> Points:
+    """Return waypoints that go there and back several times."""
+    count = int(rng.integers(2, 5))
+    points = []
+    for k in range(count):
+        across = (k / max(count - 1, 1) - 0.5) * rng.uniform(0.2, 1.2) + rng.normal(0.0, 0.15)
+        ends = np.array([[-1.0, across], [0.0, across], [1.0, across]])
+        ends += rng.normal(0.0, 0.12, ends.shape)
+        points.append(ends if k % 2 else ends[::-1])
+    return np.vstack(points)
 
 
 def _template(rng: np.random.Generator) -> Points:
@@ -121,4 +162,7 @@ FAMILIES: dict[str, Callable[[np.random.Generator, float], Points]] = {
     "random": random_curve,
     "parallel": parallel_curve,
     "dense": dense_curve,
+    "coil": coil_curve,
+    "tight": tight_curve,
+    "settled": settled_curve,
 }

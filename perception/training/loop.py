@@ -21,10 +21,12 @@ class Task(Protocol):
     Attributes:
         name: Of the network.
         widths: Its numbers of channels.
+        zoom: Pixels of its crops a unit of `perception.models.frames`.
     """
 
     name: str
     widths: tuple[int, ...]
+    zoom: float
 
     def network(self) -> nn.Module:
         """Return a fresh network."""

@@ -60,7 +60,8 @@ def shade(picture: Images, height: Images, surface: Images, shadow: Images, look
         surface: From `splat`.
         shadow: Height of what keeps the light off each pixel, at most 0 for nothing.
         looks: One row a cable: radius [px], brightness, braid amplitude, braid period [px],
-            braid slope, flank darkening, gloss, light direction [rad], shadow strength.
+            braid slope, flank darkening, gloss, light direction [rad], shadow strength,
+            unevenness, dimming a pixel of height.
     """
     rows, columns = height.shape
     for y in range(rows):
@@ -77,6 +78,9 @@ def shade(picture: Images, height: Images, surface: Images, shadow: Images, look
             slope = look[4] * across
             braid = look[2] * np.sin(phase + slope) * np.sin(phase - slope)
             value = look[1] * flank * (1.0 + 0.25 * look[5] * side) * (1.0 + braid)
+            slow = 2.0 * np.pi * along / (look[0] * 2.0)
+            value *= 1.0 + look[9] * (np.sin(0.11 * slow) + np.sin(0.043 * slow + 1.0))
+            value *= max(1.0 + look[10] * (height[y, x] - 2.0 * look[0]), 0.5)
             value += look[6] * np.exp(-8.0 * (across - 0.4 * np.sin(look[7] - direction)) ** 2)
             if shadow[y, x] > height[y, x] + 0.3 * look[0]:
                 value *= 1.0 - look[8]

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from perception.camera import GreyImage
 from perception.training import backdrop, rasterise
-from perception.training.curves import resample
+from perception.training.waypoints import resample
 
 Floats = NDArray[np.float64]
 Picture = NDArray[np.float32]
@@ -17,7 +17,18 @@ Picture = NDArray[np.float32]
 
 @dataclass(frozen=True, slots=True)
 class CableLook:
-    """How a cable looks; grey values in [0, 255], lengths in cable widths."""
+    """How a cable looks; grey values in [0, 255], lengths in cable widths.
+
+    Attributes:
+        brightness: Grey value of its middle.
+        braid_amplitude: How much the braid changes that.
+        braid_period: Length of the braid's pattern.
+        braid_slope: How far it runs askew.
+        flank: How much darker its sides are.
+        gloss: Highlight along it.
+        uneven: How much its brightness changes along it, slowly.
+        dimming: Brightness it gains or loses a width of height.
+    """
 
     brightness: float
     braid_amplitude: float
@@ -25,6 +36,8 @@ class CableLook:
     braid_slope: float
     flank: float
     gloss: float
+    uneven: float
+    dimming: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,6 +94,8 @@ def draw_look(rng: np.random.Generator, cables: int, bright: bool | None = None)
             first.braid_slope,
             first.flank,
             first.gloss,
+            first.uneven,
+            first.dimming,
         )
         for _ in range(cables)
     )
@@ -91,7 +106,7 @@ def draw_look(rng: np.random.Generator, cables: int, bright: bool | None = None)
         slant=rng.uniform(0.0, 1.3),
         shadow=rng.choice([0.0, 1.0], p=[0.2, 0.8]) * rng.uniform(0.1, 0.65),
         blur_px=rng.uniform(0.2, 1.3),
-        sharpen=rng.choice([0.0, 1.0], p=[0.6, 0.4]) * rng.uniform(0.2, 1.0),
+        sharpen=rng.choice([0.0, 1.0], p=[0.6, 0.4]) * rng.uniform(0.2, 1.4),
         noise=rng.choice([0.0, 1.0], p=[0.1, 0.9]) * rng.uniform(0.5, 9.0),
         vignette=rng.uniform(0.0, 0.35),
         jpeg_quality=int(rng.integers(40, 95)) if rng.random() < 0.25 else None,
@@ -107,6 +122,8 @@ def _cable_look(rng: np.random.Generator, brightness: float) -> CableLook:
         braid_slope=rng.uniform(0.5, 4.0),
         flank=rng.uniform(0.0, 0.75),
         gloss=rng.choice([0.0, 1.0]) * rng.uniform(5.0, 60.0),
+        uneven=rng.choice([0.0, 1.0]) * rng.uniform(0.02, 0.15),
+        dimming=rng.choice([0.0, 1.0]) * rng.uniform(-0.05, 0.05),
     )
 
 
@@ -162,6 +179,8 @@ def _looks(look: Look, width: float) -> Floats:
                 cable.gloss,
                 look.light_rad,
                 look.shadow,
+                cable.uneven,
+                cable.dimming / width,
             ]
             for cable in look.cables
         ]

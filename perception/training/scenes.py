@@ -9,10 +9,19 @@ from scipy.ndimage import gaussian_filter1d
 from perception.camera import GreyImage
 from perception.training import contact, curves
 from perception.training.render import draw_look, render
+from perception.training.waypoints import SPACING
 
 Floats = NDArray[np.float64]
 
 MOST_NODES = 1400
+SHARES = {
+    "random": 0.14,
+    "parallel": 0.18,
+    "dense": 0.18,
+    "coil": 0.12,
+    "tight": 0.16,
+    "settled": 0.22,
+}
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -108,7 +117,7 @@ def _lines(rng: np.random.Generator, config: SceneConfig) -> list[Floats]:
     lines: list[Floats] = []
     left = MOST_NODES
     for _ in range(count):
-        family = config.family or str(rng.choice(list(curves.FAMILIES), p=[0.3, 0.3, 0.4]))
+        family = config.family or str(rng.choice(list(SHARES), p=list(SHARES.values())))
         if lines and family == "parallel" and rng.random() < 0.6:
             line = curves.beside(rng, lines[-1])
         else:
@@ -129,7 +138,7 @@ def _settled(rng: np.random.Generator, lines: list[Floats]) -> tuple[Floats, NDA
     number = np.arange(len(xy))
     for first, second in contact.crossings(xy, cable):
         upper = second if in_order and rng.random() < 0.85 else rng.choice([first, second])
-        heights += 0.7 * np.exp(-(((number - upper) * curves.SPACING / 1.5) ** 2))
+        heights += 0.7 * np.exp(-(((number - upper) * SPACING / 1.5) ** 2))
     nodes = np.column_stack([xy, heights])
     contact.settle(nodes, cable, contact.near_pairs(xy, cable), 40)
     return nodes, cable

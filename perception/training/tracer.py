@@ -9,6 +9,7 @@ from torch import Tensor, nn
 from torch.nn.functional import log_softmax
 
 from perception.models.frames import Crop, Floats
+from perception.models.tracer_crop import CELL, SIZE
 from perception.models.tracer_math import cell_targets, step_logits
 from perception.models.tracer_net import TracerNet
 from perception.training.command import main
@@ -19,14 +20,17 @@ from perception.training.tracer_samples import NOWHERE, SampleConfig, sample_str
 LATER_STEPS = 0.3
 REPLAY_AFTER = 40
 MIXED = 1024
+# Half a cable width.
 HIT_CROP_PX = 2.25
+# Cables in images are about as wide as this lets them be seen.
+ZOOM = 1.5
 
 
 def mirrored(batch: Batch) -> Batch:
     """Return a batch seen in a mirror along the direction of travel."""
     crops, targets = batch
     turned = targets.clone()
-    turned[:, :, 1] = crops.shape[-2] - 1 - targets[:, :, 1]
+    turned[:, :, 1] = SIZE - 1 - targets[:, :, 1]
     turned[targets[:, :, 0] <= NOWHERE] = NOWHERE
     return crops.flip(2), turned
 
@@ -35,11 +39,12 @@ class TracerTask:
     """Predict where the cable goes on."""
 
     name = "tracer"
-    widths: tuple[int, ...] = (24, 48, 96, 128)
+    widths: tuple[int, ...] = (32, 48, 96, 160)
+    zoom: float = ZOOM
 
     def network(self) -> nn.Module:
         """Return a fresh network."""
-        return TracerNet(self.widths)
+        return TracerNet(self.widths, self.zoom)
 
     def batches(self, seed: int, first: int, stride: int, size: int) -> Iterator[Batch]:
         """Yield crops and targets; every batch comes back once, mirrored, some time later."""
@@ -53,7 +58,9 @@ class TracerTask:
     def _fresh(self, seed: int, first: int, stride: int, size: int) -> Iterator[Batch]:
         crops: list[Crop] = []
         targets: list[Floats] = []
-        for samples in sample_stream(seed, first, stride, SceneConfig(), SampleConfig()):
+        for samples in sample_stream(
+            seed, first, stride, SceneConfig(), SampleConfig(zoom=self.zoom)
+        ):
             crops.extend(samples.crops)
             targets.extend(samples.targets)
             while len(crops) >= MIXED:
@@ -97,7 +104,7 @@ class TracerTask:
             grid = heat.shape[-1]
             best = step_logits(heat, stop).argmax(1)
             gone = targets[:, 0, 0] <= NOWHERE
-            found = torch.stack([best % grid, best // grid], 1) * (crops.shape[-1] // grid) + 0.5
+            found = torch.stack([best % grid, best // grid], 1) * CELL + 0.5
             near = (found - targets[:, 0]).norm(dim=1) < HIT_CROP_PX
             stopped = best == grid * grid
             hits.append((near & ~stopped)[~gone])

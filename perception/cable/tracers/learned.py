@@ -68,7 +68,7 @@ class LearnedTracer:
         mask = mask_under(image, start_px)
         if mask is None:
             return None
-        view = make_view(image, mask)
+        view = make_view(image, mask, self._model.zoom)
         far = [
             end
             for end in endpoints

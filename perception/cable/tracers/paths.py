@@ -109,9 +109,7 @@ def checked(path: Path, image: ScaledImage, ends: Ends) -> Path:
     if path.end is not None:
         return path
     here = path.points[-1]
-    rows, columns = image.pixels.shape
-    size = np.array([columns, rows])
-    if (here < EDGE_MARGIN).any() or (here > size - 1 - EDGE_MARGIN).any():
+    if (here < EDGE_MARGIN).any() or (here > image.size - 1 - EDGE_MARGIN).any():
         return path.ended(TraceEnd.EDGE)
     end = ends.reached(path)
     if end is not None:

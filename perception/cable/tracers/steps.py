@@ -50,17 +50,20 @@ class Outlook:
     end: float
 
 
-def make_view(image: GreyImage, mask: CableMask) -> TracingView:
-    """Return the view of an image."""
+def make_view(image: GreyImage, mask: CableMask, zoom: float = 1.0) -> TracingView:
+    """Return the view of an image, with `zoom` pixels a unit."""
     margin = 2 * max(round(MARGIN * mask.width_px), 1) + 1
     near = cv2.dilate(mask.cable.astype(np.uint8) * 255, np.ones((margin, margin), np.uint8))
     cable = scale_image(near.astype(np.uint8), mask.width_px, WIDTH)
     beyond = ScaledImage(cable.pixels, cable.scale, 255.0)
-    return TracingView(scale_image(image, mask.width_px, WIDTH), beyond)
+    return TracingView(scale_image(image, mask.width_px, WIDTH, zoom), beyond)
 
 
 class StepModel:
     """A trained tracer network.
+
+    Attributes:
+        zoom: Pixels a unit of the views that it needs.
 
     Args:
         folder: A trained version, see `perception.models.store`.
@@ -68,7 +71,8 @@ class StepModel:
 
     def __init__(self, folder: FilePath) -> None:
         self._network = load_network(folder)
-        self._temperature = read_config(folder).temperature
+        config = read_config(folder)
+        self._temperature, self.zoom = config.temperature, config.zoom
 
     @torch.inference_mode()
     def outlooks(self, view: TracingView, paths: Sequence[Path]) -> list[Outlook]:

@@ -6,7 +6,7 @@ torch = pytest.importorskip("torch")
 from perception.models import tracer_crop  # noqa: E402  # after the skip
 from perception.training.crossing import CrossingTask, crossing_views  # noqa: E402
 from perception.training.scenes import SceneConfig, make_scene  # noqa: E402
-from perception.training.tracer import TracerTask, mirrored  # noqa: E402
+from perception.training.tracer import ZOOM, TracerTask, mirrored  # noqa: E402
 from perception.training.tracer_samples import (  # noqa: E402
     NOWHERE,
     SampleConfig,
@@ -14,7 +14,7 @@ from perception.training.tracer_samples import (  # noqa: E402
 )
 
 SMALL = SceneConfig(extent=24.0, narrowest_px=5.0, widest_px=7.0)
-STRAIGHT = SampleConfig(from_scene=40, scale_error=0.0, jitter=0.0)
+STRAIGHT = SampleConfig(from_scene=40, scale_error=0.0, jitter=0.0, drift=0.0, zoom=ZOOM)
 
 
 def _samples(seed=2):
@@ -33,7 +33,7 @@ def test_targets_lie_one_step_ahead():
 
 
 def test_path_ends_at_its_place_in_the_crop():
-    column, row = (int(value) for value in tracer_crop.HERE)
+    column, row = (int((value + 0.5) * ZOOM) for value in tracer_crop.HERE)
     samples = _samples()
     assert (
         samples.crops[:, 1, row : row + 2, column - 1 : column + 1].max(axis=(1, 2)) > 0.5
