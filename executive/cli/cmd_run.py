@@ -17,7 +17,7 @@ from executive.cli.settings import apply_settings
 from executive.core.errors import CellwrightError, InputError
 from executive.engine.control import EmergencyStopped, RunControl, stopped_by_signals
 from executive.engine.loader import load_mission
-from executive.engine.recording.messages import RunReport
+from executive.engine.recording.messages import RunReport, SlowNode
 from executive.engine.runner import MissionOutcome, one_line
 from executive.inspector.views import OUTCOME_STYLES
 
@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from executive.app.views import LiveView
 
 _BAD_INPUT, _ERROR = 2, MissionOutcome.ERROR.exit_code
+_SLOW_SHOWN = 3
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,6 +39,15 @@ class _Request:
     timeout_s: float | None
     view: bool
     html: Path | None
+
+
+@dataclass(frozen=True, slots=True)
+class _Result:
+    """What it came to: the report, nodes that were too slow, and what was raised on the way."""
+
+    report: RunReport
+    slow: tuple[SlowNode, ...] = ()
+    raised: tuple[str, ...] = ()
 
 
 def run(
@@ -67,24 +77,26 @@ def run(
 
     Exit codes: 0 success, 1 mission failed, 2 bad input, 3 error, 4 stopped by the user.
 
-    Ctrl-C stops the mission in order; a second one stops the arms at once.
+    Ctrl-C stops the mission in order; a second one stops the arms at once. Ctrl-Z pauses the
+    mission; a second one lets it go on.
     """
     request = _Request(mission, seed, tuple(assignments or ()), record, timeout, view, html)
     with stdout_kept_for_the_result():
-        report, exit_code = _reported(request, chatter())
+        result, exit_code = _reported(request, chatter())
+    report = result.report
     if as_json:
         typer.echo(report.model_dump_json(exclude={"truth"} if report.truth is None else None))
     else:
-        _print_summary(report)
+        _print_summary(result)
     raise typer.Exit(exit_code)
 
 
-def _reported(request: _Request, console: Console) -> tuple[RunReport, int]:
+def _reported(request: _Request, console: Console) -> tuple[_Result, int]:
     """Run what is asked for; whatever goes wrong becomes a report and an exit code."""
     control = RunControl()
     try:
         with stopped_by_signals(control):
-            report = _recorded_run(request, control, console)
+            result = _recorded_run(request, control, console)
     except InputError as error:
         print_error(console, str(error))
         return _no_run(request, "error", str(error)), _BAD_INPUT
@@ -94,11 +106,11 @@ def _reported(request: _Request, console: Console) -> tuple[RunReport, int]:
     except Exception as error:  # the last place that can say what happened
         _print_unexpected(console, error)
         return _no_run(request, "error", one_line(error)), _ERROR
-    written = _write_html(request, report, console)
-    return report, MissionOutcome(report.outcome).exit_code if written else _ERROR
+    written = _write_html(request, result.report, console)
+    return result, MissionOutcome(result.report.outcome).exit_code if written else _ERROR
 
 
-def _recorded_run(request: _Request, control: RunControl, console: Console) -> RunReport:
+def _recorded_run(request: _Request, control: RunControl, console: Console) -> _Result:
     from executive.app.catalogue import port_types, skills
 
     mission = load_mission(request.mission, skills=skills(), types=port_types())
@@ -130,7 +142,8 @@ def _recorded_run(request: _Request, control: RunControl, console: Console) -> R
         tree = build(mission, devices=cell.devices, clock=cell.clock, inputs=settings.inputs)
         live = [stack.enter_context(closing(_live_view(console)))] if request.view else []
         with RunDisplay(console, recorded_nodes(tree.nodes)) as display:
-            return run_mission(plan, tree, cell, control, (display, *live))
+            done = run_mission(plan, tree, cell, control, (display, *live))
+    return _Result(done.report, done.slow, done.raised)
 
 
 def _live_view(console: Console) -> "LiveView":
@@ -157,9 +170,9 @@ def _write_html(request: _Request, report: RunReport, console: Console) -> bool:
     return True
 
 
-def _no_run(request: _Request, outcome: Literal["aborted", "error"], reason: str) -> RunReport:
+def _no_run(request: _Request, outcome: Literal["aborted", "error"], reason: str) -> _Result:
     """Return the report of a mission that did not begin."""
-    return RunReport(
+    report = RunReport(
         mission=request.mission,
         seed=request.seed,
         outcome=outcome,
@@ -171,6 +184,7 @@ def _no_run(request: _Request, outcome: Literal["aborted", "error"], reason: str
         actions=(),
         recording=None,
     )
+    return _Result(report)
 
 
 def _print_unexpected(console: Console, error: Exception) -> None:
@@ -180,7 +194,8 @@ def _print_unexpected(console: Console, error: Exception) -> None:
         console.print(Text("".join(traceback.format_exception(error)), "bright_black"))
 
 
-def _print_summary(report: RunReport) -> None:
+def _print_summary(result: _Result) -> None:
+    report = result.report
     took = (
         f"{report.sim_s:.1f} s on the cell's clock, {report.wall_s:.1f} s here, "
         f"{report.ticks} ticks, {len(report.actions)} actions"
@@ -191,6 +206,8 @@ def _print_summary(report: RunReport) -> None:
         ("claim", Text(_words(report.claim))),
         ("truth", Text(_words(report.truth))),
         ("took", Text(took)),
+        *(("slow", Text(_too_slow(node))) for node in result.slow[:_SLOW_SHOWN]),
+        *(("raised", Text(line)) for line in result.raised),
         ("recorded", Text(report.recording or "")),
         ("open it", Text(f"cellwright inspect {report.recording}" if report.recording else "")),
     ]
@@ -198,6 +215,11 @@ def _print_summary(report: RunReport) -> None:
     for name, text in lines:
         if text:
             console.print(Text.assemble((f"{name:<10}", "bright_black"), text), soft_wrap=True)
+
+
+def _too_slow(node: SlowNode) -> str:
+    times = "once" if node.times == 1 else f"{node.times} times"
+    return f"{node.path}: {times} over {node.budget_s:.3g} s a step, at worst {node.worst_s:.2f} s"
 
 
 def _words(value: JsonValue) -> str:

@@ -11,7 +11,12 @@ from rich.text import Text
 
 from executive.core.world import StreamMessage
 from executive.engine.recording.actions import ActionLog
-from executive.engine.recording.messages import ActionReport, RecordedNode
+from executive.engine.recording.messages import (
+    PAUSES_TOPIC,
+    ActionReport,
+    PauseMessage,
+    RecordedNode,
+)
 from executive.engine.ticks import Tick
 
 STATUS_STYLES = {"success": "green", "failure": "red", "halted": "yellow", "running": "yellow"}
@@ -23,7 +28,7 @@ class RunDisplay:
 
     def __init__(self, console: Console, nodes: Sequence[RecordedNode]) -> None:
         """Show the actions of the nodes of a table."""
-        self._console = console
+        self._console, self._nodes = console, nodes
         self._actions = ActionLog(nodes)
         self._shown = 0
         self._live = Live(console=console, auto_refresh=False, transient=True)
@@ -57,7 +62,16 @@ class RunDisplay:
             self._live.update(Text(line, "bright_black"), refresh=True)
 
     def on_streams(self, messages: Sequence[StreamMessage]) -> None:
-        """Streams are not shown."""
+        """Show pauses, and nothing else of what the cell streams."""
+        for message in messages:
+            if message.topic == PAUSES_TOPIC:
+                pause = PauseMessage.model_validate_json(message.data)
+                self._console.print(self._pause_line(pause), soft_wrap=True)
+
+    def _pause_line(self, pause: PauseMessage) -> Text:
+        leaves = ", ".join(f"{self._nodes[one.node].path}: {one.policy}" for one in pause.leaves)
+        told = f"by {pause.by}" + (f" ({leaves})" if pause.state == "paused" and leaves else "")
+        return Text.assemble(f"{pause.time_s:8.1f} s  {pause.state:<20}", (told, "bright_black"))
 
 
 def _action_line(action: ActionReport) -> Text:

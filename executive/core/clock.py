@@ -35,6 +35,30 @@ class MonotonicClock:
             time.sleep(left_s)
 
 
+class MissionClock:
+    """The clock of a cell without the time for which a mission was paused.
+
+    Timeouts and delays of a tree are on it, so that no pause makes them pass.
+    """
+
+    def __init__(self, clock: Clock) -> None:
+        """Bind the clock of a cell; nothing is left out yet."""
+        self._clock = clock
+        self._paused_s = 0.0
+
+    def now_s(self) -> float:
+        """Return the time of the cell less all pauses [s]."""
+        return self._clock.now_s() - self._paused_s
+
+    def sleep_until(self, time_s: float) -> None:
+        """Wait on the clock of the cell."""
+        self._clock.sleep_until(time_s + self._paused_s)
+
+    def skip(self, pause_s: float) -> None:
+        """Leave out a pause that has just ended."""
+        self._paused_s += pause_s
+
+
 class ManualClock:
     """A clock that only moves when it is told to; for tests and dry runs."""
 

@@ -7,6 +7,7 @@ An exception says that something is wired or written wrongly:
     ├── InputError        what the user gave cannot be used        exit code 2
     │   └── DocumentError one or more faults in YAML documents     exit code 2
     ├── NodeError         a node of the tree raised                exit code 3
+    ├── ClaimError        two nodes want one arm                   exit code 3
     ├── DeviceError       a driver, camera or simulator broke      exit code 3
     └── RecordingError    a recording cannot be written or read    exit code 3
 """
@@ -72,6 +73,10 @@ class NodeError(CellwrightError):
             f"{path} ({node_type}): raised at tick {tick}: {type(cause).__name__}: {cause}"
         )
         self.__cause__ = cause
+
+
+class ClaimError(CellwrightError):
+    """A node needs what another one holds, such as an arm."""
 
 
 class DeviceError(CellwrightError):

@@ -21,7 +21,8 @@ are written once:
             return success(endpoints=ends)
 
 Constructor parameters are the devices of the cell, bound by name and checked by type when
-the tree is built. Nothing may move before the first step of `run`.
+the tree is built. Nothing may move before the first step of `run`. What takes longer than a
+tick is done beside it (`executive.core.work`). docs/skill_api.md tells all of it.
 """
 
 import inspect
@@ -29,6 +30,7 @@ import typing
 from abc import ABC, abstractmethod
 from collections.abc import Generator, Mapping
 from dataclasses import dataclass
+from enum import StrEnum
 from types import MappingProxyType
 from typing import Any, ClassVar, Final
 
@@ -82,6 +84,19 @@ class Port:
         return self.default is REQUIRED
 
 
+class PausePolicy(StrEnum):
+    """What a pause of the mission does to a skill that runs.
+
+    HOLD: `on_pause` is called, and no step until after `on_resume`.
+    FINISH: it goes on being stepped, alone, until it has ended; the tree hears of it later.
+    STOP: it is halted, and begins anew with its inputs after the pause.
+    """
+
+    HOLD = "hold"
+    FINISH = "finish"
+    STOP = "stop"
+
+
 class Skill(ABC):
     """One thing that a cell can do, looked up by name from a tree.
 
@@ -91,12 +106,19 @@ class Skill(ABC):
         ACTS: Whether it moves something in the cell; run reports list it under actions.
         REPEATABLE: Whether a tree may run it again after it has ended; `cellwright lint` holds
             loops to it.
+        CLAIMS: What no other node may use while it runs, e.g. `left_arm`.
+        PAUSE: What a pause of the mission does to it.
+        BUDGET_S: How long one step may take on the machine's clock [s]; a longer one is
+            recorded. None stands for the time from one tick to the next.
     """
 
     OUT: ClassVar[Mapping[str, Port]] = MappingProxyType({})
     REASONS: ClassVar[frozenset[str]] = frozenset()
     ACTS: ClassVar[bool] = False
     REPEATABLE: ClassVar[bool] = True
+    CLAIMS: ClassVar[frozenset[str]] = frozenset()
+    PAUSE: ClassVar[PausePolicy] = PausePolicy.HOLD
+    BUDGET_S: ClassVar[float | None] = None
 
     _generator: SkillRun | None = None
 
@@ -110,6 +132,22 @@ class Skill(ABC):
         Override it in every skill that moves something, and say in the class docstring what
         it leaves behind.
         """
+
+    def on_pause(self) -> None:  # noqa: B027 - a skill that moves nothing rests already
+        """Bring to rest what moves, so that it can be taken up again; for `PausePolicy.HOLD`."""
+
+    def on_resume(self) -> None:  # noqa: B027 - see on_pause
+        """Take up what `on_pause` has brought to rest."""
+
+    def resting(self) -> bool:
+        """Return whether all that this skill has set in motion rests; asked during a pause."""
+        return True
+
+    @typing.final
+    @property
+    def active(self) -> bool:
+        """Whether it has been started and has not ended."""
+        return self._generator is not None
 
     @typing.final
     def start(self, inputs: Mapping[str, object]) -> None:

@@ -27,6 +27,7 @@ from executive.engine.expression import parse_expression
 from executive.engine.nodes import Assignment, Condition
 from executive.engine.parallel import Parallel
 from executive.engine.scope import Scope
+from executive.engine.supervision import Supervision
 from executive.engine.values import parse_value
 
 _ENDS = {
@@ -44,7 +45,8 @@ class Site:
         name: Its name.
         path: Its path.
         scope: Names that it sees.
-        clock: The cell's clock.
+        clock: The mission's clock.
+        supervision: What its leaves answer to.
         children: Its children, in order.
         names: Their names in the file, in order.
     """
@@ -53,6 +55,7 @@ class Site:
     path: str
     scope: Scope
     clock: Clock
+    supervision: Supervision
     children: Sequence[Behaviour]
     names: Sequence[str]
 
@@ -68,12 +71,13 @@ def assemble(model: NodeModel, site: Site) -> Behaviour:
 
 
 def _when(model: WhenNode, site: Site) -> Behaviour:
-    return Condition(site.name, parse_expression(model.when), site.scope)
+    expression = parse_expression(model.when)
+    return Condition(site.name, site.path, expression, site.scope, site.supervision)
 
 
 def _set(model: SetNode, site: Site) -> Behaviour:
     expressions = {key: parse_expression(text) for key, text in model.set.items()}
-    return Assignment(site.name, site.path, expressions, site.scope)
+    return Assignment(site.name, site.path, expressions, site.scope, site.supervision)
 
 
 def _parallel(model: ParallelBody, site: Site) -> Behaviour:
@@ -86,6 +90,7 @@ def _parallel(model: ParallelBody, site: Site) -> Behaviour:
         succeed = model.succeed if isinstance(model.succeed, int) else amounts[model.succeed]
     fail = model.fail if isinstance(model.fail, int) else amounts.get(model.fail)
     wait = model.on_done == "wait"
+    site.supervision.claims.note_parallel(site.path)
     return Parallel(site.name, site.children, succeed=succeed, fail=fail, wait=wait)
 
 

@@ -11,7 +11,7 @@ from types import MappingProxyType
 from py_trees.behaviour import Behaviour
 from py_trees.behaviours import Failure
 
-from executive.core.clock import Clock
+from executive.core.clock import Clock, MissionClock
 from executive.core.errors import DocumentError, Fault, InputError
 from executive.core.registry import closest
 from executive.core.skill import input_ports
@@ -19,11 +19,12 @@ from executive.engine.assembly import Site, assemble, guard
 from executive.engine.blackboard import Blackboard
 from executive.engine.devices import bind
 from executive.engine.document import SkillNode, SubtreeNode
-from executive.engine.loader import Program
-from executive.engine.nodes import SkillBehaviour
+from executive.engine.loader import Mission, Program
 from executive.engine.outline import NodeSpec, TreeSpec
 from executive.engine.porttypes import fit
 from executive.engine.scope import Scope
+from executive.engine.skill_node import SkillBehaviour
+from executive.engine.supervision import Supervision
 from executive.engine.values import Literal, fitted, parse_value
 from executive.engine.wiring import label
 
@@ -69,6 +70,8 @@ class BuiltTree:
         root: The root node.
         nodes: Every node, depth first.
         blackboard: Its values.
+        clock: The cell's clock less pauses, which the runner tells it.
+        supervision: What its leaves answer to.
         scope: The names of the outermost tree.
         output_names: Outputs that it declares.
     """
@@ -76,6 +79,8 @@ class BuiltTree:
     root: Behaviour
     nodes: tuple[NodeInfo, ...]
     blackboard: Blackboard
+    clock: MissionClock
+    supervision: Supervision
     scope: Scope
     output_names: tuple[str, ...]
 
@@ -98,7 +103,7 @@ def build(
     Args:
         program: What to build.
         devices: Devices of the cell, by name.
-        clock: The cell's clock; timeouts and delays are on it.
+        clock: The cell's clock; timeouts and delays are on it, less pauses.
         inputs: Values of its inputs by name: as in YAML, or of the declared type.
 
     Raises:
@@ -109,12 +114,28 @@ def build(
     scope = Scope(program.tree.name, blackboard)
     for name, value in _inputs(program.tree, inputs).items():
         scope.write(name, value, writer="")
-    builder = _Builder(program, devices, clock, blackboard)
+    mission_clock, supervision = MissionClock(clock), _supervision(program)
+    builder = _Builder(program, devices, mission_clock, blackboard, supervision)
     root = builder.build(program.tree.root, _Place(program.tree.name, None, scope, program.tree))
     if builder.faults:
         raise DocumentError(sorted(set(builder.faults)))
     nodes = tuple(node for node in builder.nodes if node is not None)
-    return BuiltTree(root, nodes, blackboard, scope, tuple(program.tree.outputs))
+    return BuiltTree(
+        root,
+        nodes,
+        blackboard,
+        mission_clock,
+        supervision,
+        scope,
+        tuple(program.tree.outputs),
+    )
+
+
+def _supervision(program: Program) -> Supervision:
+    if not isinstance(program, Mission):
+        return Supervision()
+    document = program.document
+    return Supervision(document.on_error, budget_s=1.0 / document.tick_hz)
 
 
 def _inputs(tree: TreeSpec, given: Mapping[str, object]) -> dict[str, object]:
@@ -162,9 +183,11 @@ class _Builder:
         devices: Mapping[str, object],
         clock: Clock,
         blackboard: Blackboard,
+        supervision: Supervision,
     ) -> None:
         self._program, self._devices = program, devices
         self._clock, self._blackboard = clock, blackboard
+        self._supervision = supervision
         self.nodes: list[NodeInfo | None] = []
         self.faults: list[Fault] = []
         self._guard_paths: set[str] = set()
@@ -202,7 +225,15 @@ class _Builder:
                 for child in spec.children
             ]
             names = [child.name for child in spec.children]
-            site = Site(place.name, place.path, place.scope, self._clock, children, names)
+            site = Site(
+                place.name,
+                place.path,
+                place.scope,
+                self._clock,
+                self._supervision,
+                children,
+                names,
+            )
             behaviour = assemble(spec.model, site)
         self._fill(index, spec, place, behaviour, spec.model.kind)
         return behaviour
@@ -235,6 +266,8 @@ class _Builder:
             defaults={name: port.default for name, port in ports.items() if not port.required},
             outputs={port: key.removeprefix("$") for port, key in model.out.items()},
             ports=skill.OUT,
+            supervision=self._supervision,
+            budget_s=model.budget_s,
         )
 
     def _reserve(self) -> int:

@@ -107,6 +107,9 @@ class SkillNode(NodeModel):
     out: dict[Name, Reference] = Field(
         default_factory=dict, description="Keys that its outputs are written to, as `$key`."
     )
+    budget_s: Seconds | None = Field(
+        None, description="How long a step may take [s]; a longer one is recorded."
+    )
 
 
 class SubtreeNode(NodeModel):
@@ -382,6 +385,9 @@ class MissionDocument(Model):
     )
     timeout_s: Seconds | None = Field(None, description="Limit on the cell's clock [s].")
     tick_hz: Annotated[float, Field(strict=True, gt=0.0, le=1000.0)] = 10.0
+    on_error: Literal["end", "fail"] = Field(
+        "end", description="What a leaf that raises does: end the mission, or fail."
+    )
     in_: dict[Name, InPort] = Field(default_factory=dict, alias="in")
     out: dict[Name, OutPort] = Field(default_factory=dict)
     root: Node

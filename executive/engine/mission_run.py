@@ -3,7 +3,7 @@
 import dataclasses
 import platform
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -24,8 +24,9 @@ from executive.engine.recording.messages import (
     RunReport,
     SourceFile,
 )
+from executive.engine.recording.slow import SlowLog
 from executive.engine.recording.writer import RecordingWriter
-from executive.engine.runner import Runner
+from executive.engine.runner import Runner, one_line
 from executive.engine.ticks import RunObserver
 
 CLAIM = "claim"
@@ -65,8 +66,10 @@ def run_mission(
     cell: Cell,
     control: RunControl,
     observers: Sequence[RunObserver] = (),
-) -> RunReport:
+) -> ResultMessage:
     """Run a mission to its end, record it, and score it where the cell knows the truth.
+
+    A claim or a truth that cannot be had costs neither the recording nor the rest of the report.
 
     Args:
         plan: What is run, and with what.
@@ -80,31 +83,44 @@ def run_mission(
     """
     header = mission_header(plan, tree.nodes)
     with RecordingWriter(plan.recording, header) as writer:
-        actions = ActionLog(header.nodes)
+        actions, slow = ActionLog(header.nodes), SlowLog(header.nodes)
         runner = Runner(
             tree,
             cell,
             tick_hz=header.tick_hz,
             timeout_s=plan.timeout_s,
-            observers=(writer, actions, *observers),
+            observers=(writer, actions, slow, *observers),
             control=control,
         )
         result = runner.run()
+        raised = [one_line(error) for error in result.survived]
         report = RunReport(
             mission=header.mission,
             seed=plan.seed,
             outcome=result.outcome.value,
             reason=result.reason,
-            claim=as_json(tree.outputs().get(CLAIM)),
-            truth=as_json(cell.truth()),
+            claim=_asked(CLAIM, lambda: tree.outputs().get(CLAIM), raised),
+            truth=_asked("truth", cell.truth, raised),
             sim_s=result.sim_s,
             wall_s=result.wall_s,
             ticks=result.ticks,
             actions=actions.reports(),
             recording=str(plan.recording),
         )
-        writer.write_result(ResultMessage(report=report, rate=result.rate))
-    return report
+        message = ResultMessage(
+            report=report, rate=result.rate, slow=slow.reports(), raised=tuple(raised)
+        )
+        writer.write_result(message)
+    return message
+
+
+def _asked(what: str, ask: Callable[[], object], raised: list[str]) -> JsonValue:
+    """Return an answer as JSON; where asking raises, None, with a line in `raised`."""
+    try:
+        return as_json(ask())
+    except Exception as error:  # the run is over: what it came to is wanted all the same
+        raised.append(f"{what}: {one_line(error)}")
+        return None
 
 
 def mission_header(plan: RunPlan, nodes: Sequence[NodeInfo]) -> MissionHeader:

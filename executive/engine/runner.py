@@ -5,21 +5,23 @@ of it is told to the observers; the recorder is one of them.
 """
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
+from functools import cached_property
 
 from py_trees.behaviour import Behaviour
 
-from executive.core.errors import NodeError
-from executive.core.world import Cell
-from executive.engine.builder import BuiltTree
+from executive.core.errors import DeviceError, NodeError
+from executive.core.world import Cell, StreamMessage
+from executive.engine.builder import BuiltTree, NodeInfo
 from executive.engine.causes import Cause, deciding_leaves
 from executive.engine.control import EmergencyStopped, RunControl
-from executive.engine.probe import TreeProbe
+from executive.engine.pausing import Pauses
+from executive.engine.probe import TreeProbe, fault_of
 from executive.engine.rate import Rate, RateReport
 from executive.engine.stopping import each_guarded, stop_running
-from executive.engine.ticks import NodeStatus, RunObserver
+from executive.engine.ticks import NodeStatus, RunObserver, SlowStep, Tick
 
 
 class MissionOutcome(StrEnum):
@@ -59,6 +61,7 @@ class RunResult:
         wall_s: Duration on the machine's clock [s].
         rate: How well the tick rate was kept.
         errors: What was raised, the first one first.
+        survived: What leaves raised without ending the mission, in order.
     """
 
     outcome: MissionOutcome
@@ -69,6 +72,7 @@ class RunResult:
     wall_s: float
     rate: RateReport
     errors: tuple[Exception, ...]
+    survived: tuple[NodeError, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,8 +115,17 @@ class Runner:
         self._probe = TreeProbe(tree)
         self._start_s = self._clock.now_s()
         self._rate = Rate(tick_hz, self._start_s)
+        self._pauses = Pauses(
+            tree,
+            self._clock,
+            self.control,
+            period_s=1.0 / tick_hz,
+            tell=self._tell_streams,
+            error_of=self._error_of,
+        )
         self._number = 0
         self._told: NodeError | None = None
+        self._survived: list[NodeError] = []
 
     def run(self) -> RunResult:
         """Tick until the mission ends, whatever ends it; then stop everything.
@@ -121,6 +134,7 @@ class Runner:
             How it ended. Nothing that a node, the cell or an observer raises gets out.
         """
         wall_start_s = time.perf_counter()
+        self.control.brakes_with(self._cell.emergency_stop)
         ending = self._ending()
         ended_s = self._clock.now_s()
         errors = self._stop_everything(ending.errors)
@@ -135,6 +149,7 @@ class Runner:
             wall_s=time.perf_counter() - wall_start_s,
             rate=self._rate.report(),
             errors=errors,
+            survived=tuple(self._survived),
         )
 
     def _ending(self) -> _Ending:
@@ -143,29 +158,62 @@ class Runner:
             return _broken(*errors) if errors else self._tick_until_the_end()
         except (EmergencyStopped, KeyboardInterrupt):
             return self._stopped_by_the_user()
-        except Exception as cause:  # the cell, the clock or an observer: arms must still stop
-            return _broken(cause)
+        except BaseException as cause:  # also an exit: whatever it is, arms must still stop
+            return _broken(self._located(cause))
+
+    def _located(self, cause: BaseException) -> Exception:
+        """Return an exception as it is, and an exit as an error of the node that asked for it."""
+        if isinstance(cause, Exception):
+            return cause
+        return self._error_of(self._probe.raised or self._tree.root, cause)
 
     def _tick_until_the_end(self) -> _Ending:
         while True:
-            self._wait_while_paused()
-            ending = self._interrupted() or self._tick()
+            ending = self._paused() or self._interrupted() or self._tick()
             if ending is not None:
                 return ending
             with self.control.interruptible():
                 self._clock.sleep_until(self._rate.next_due_s(self._clock.now_s()))
             self._tell_streams()
 
+    def _paused(self) -> _Ending | None:
+        paused_s, errors = self._pauses.wait()
+        self._rate.skip(paused_s)
+        return _broken(*errors) if errors else None
+
     def _tick(self) -> _Ending | None:
         now_s = self._clock.now_s()
         with self.control.interruptible():
             tick, error = self._probe.tick(self._number, now_s)
+        tick = self._with_notes(tick)
         self._number += 1
         self._rate.ticked(now_s, tick.duration_s)
         for observer in self._observers:
             observer.on_tick(tick)
         self._told = error
+        if self.control.emergency:
+            # What a node raised when its arms were taken from it is no error of the mission.
+            return self._stopped_by_the_user()
         return _broken(error) if error is not None else self._answer()
+
+    def _with_notes(self, tick: Tick) -> Tick:
+        """Add what leaves have noted about themselves."""
+        late, raised = self._tree.supervision.drain()
+        if not late and not raised:
+            return tick
+        errors = [self._error_of(self._places[one.path].behaviour, one.cause) for one in raised]
+        self._survived += errors
+        return replace(
+            tick,
+            slow=tuple(
+                SlowStep(self._places[one.path].index, one.seconds, one.budget_s) for one in late
+            ),
+            faults=(*(fault_of(error) for error in errors), *tick.faults),
+        )
+
+    @cached_property
+    def _places(self) -> Mapping[str, NodeInfo]:
+        return {node.path: node for node in self._tree.nodes}
 
     def _answer(self) -> _Ending | None:
         answer = self._probe.answer
@@ -201,16 +249,11 @@ class Runner:
         ]
         return f"in {', '.join(running)}" if running else "before the first tick"
 
-    def _wait_while_paused(self) -> None:
-        began_s = self._clock.now_s()
-        if self.control.wait_while_paused():
-            self._rate.skip(self._clock.now_s() - began_s)
-
     def _stop_everything(self, raised: tuple[Exception, ...]) -> tuple[Exception, ...]:
         """Stop nodes and cell, and tell the observers; return all that was raised in the run."""
         errors = list(raised)
         if self.control.emergency:
-            errors += _raised_by(self._cell.emergency_stop)
+            errors += _raised_by(self.control.brake)
         errors += stop_running(self._tree.root, self._probe.raised, self._error_of)
         errors += _raised_by(self._stop_cell)
         errors += self._each_node(lambda node: node.shutdown())
@@ -222,7 +265,7 @@ class Runner:
             with self.control.interruptible():
                 self._cell.stop()
         except EmergencyStopped:
-            self._cell.emergency_stop()
+            self.control.brake()
 
     def _tell_end(self, errors: Sequence[Exception]) -> None:
         untold = [error for error in errors if error is not self._told]
@@ -232,15 +275,15 @@ class Runner:
                 observer.on_tick(end)
         self._tell_streams()
 
-    def _tell_streams(self) -> None:
-        messages = tuple(self._cell.drain_streams())
+    def _tell_streams(self, more: Sequence[StreamMessage] = ()) -> None:
+        messages = (*self._cell.drain_streams(), *more)
         for observer in self._observers:
             observer.on_streams(messages)
 
     def _each_node(self, act: Callable[[Behaviour], None]) -> list[NodeError]:
         return each_guarded(self._tree.root.iterate(), act, self._error_of)
 
-    def _error_of(self, behaviour: Behaviour, cause: Exception) -> NodeError:
+    def _error_of(self, behaviour: Behaviour, cause: BaseException) -> NodeError:
         return self._probe.error_of(behaviour, self._number, cause)
 
 
@@ -261,4 +304,6 @@ def _raised_by(act: Callable[[], None]) -> list[Exception]:
         act()
     except Exception as cause:  # what follows must still be done
         return [cause]
+    except BaseException as cause:  # also after an exit or an interrupt
+        return [DeviceError(f"{type(cause).__name__} while the run was being ended: {cause}")]
     return []

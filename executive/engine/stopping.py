@@ -11,7 +11,7 @@ from py_trees.common import Status
 
 from executive.core.errors import NodeError
 
-ErrorOf = Callable[[Behaviour, Exception], NodeError]
+ErrorOf = Callable[[Behaviour, BaseException], NodeError]
 
 
 def stop_running(root: Behaviour, raised: Behaviour | None, error_of: ErrorOf) -> list[NodeError]:
@@ -44,11 +44,14 @@ def _terminate(node: Behaviour) -> None:
 def each_guarded(
     nodes: Iterable[Behaviour], act: Callable[[Behaviour], None], error_of: ErrorOf
 ) -> list[NodeError]:
-    """Do something with every node and return all that was raised (traps e4, e5)."""
+    """Do something with every node and return all that was raised (traps e4, e5).
+
+    That goes for exits and interrupts too: what asked for them does not want arms that move.
+    """
     errors = []
     for node in nodes:
         try:
             act(node)
-        except Exception as cause:  # one node's failure must not keep the others waiting
+        except BaseException as cause:  # one node's failure must not keep the others waiting
             errors.append(error_of(node, cause))
     return errors

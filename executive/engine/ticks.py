@@ -72,6 +72,21 @@ class NodeFault:
 
 
 @dataclass(frozen=True, slots=True)
+class SlowStep:
+    """A step of a skill that took longer than it may.
+
+    Attributes:
+        node: Index of the node.
+        seconds: How long it took, on the machine's clock [s].
+        budget_s: How long it may take [s].
+    """
+
+    node: int
+    seconds: float
+    budget_s: float
+
+
+@dataclass(frozen=True, slots=True)
 class Tick:
     """Everything that one tick changed.
 
@@ -86,6 +101,7 @@ class Tick:
         outcomes: Leaves that finished, and decorators that answered by themselves.
         writes: Blackboard writes, in order; in a recording, values are in their JSON form.
         faults: Exceptions.
+        slow: Steps that took longer than they may.
     """
 
     number: int
@@ -97,6 +113,7 @@ class Tick:
     outcomes: tuple[NodeOutcome, ...] = ()
     writes: tuple[Write, ...] = ()
     faults: tuple[NodeFault, ...] = ()
+    slow: tuple[SlowStep, ...] = ()
 
 
 class RunObserver(Protocol):

@@ -4,19 +4,22 @@ Times are those of the cell's clock, so that two runs with one seed differ only 
 `started_utc`, in durations and in `wall_s`.
 """
 
+from dataclasses import dataclass
 from typing import Literal
 
 from pydantic import BaseModel, ConfigDict, Field, JsonValue
 
+from executive.core.skill import PausePolicy
 from executive.engine.blackboard import Write
 from executive.engine.rate import RateReport
-from executive.engine.ticks import Halt, NodeFault, NodeOutcome, NodeStatus
+from executive.engine.ticks import Halt, NodeFault, NodeOutcome, NodeStatus, SlowStep
 
 KEYFRAME_EVERY = 256
 
 MISSION_TOPIC = "/mission"
 TICKS_TOPIC = "/ticks"
 IMAGES_TOPIC = "/images"
+PAUSES_TOPIC = "/pauses"
 ARRAYS_TOPIC = "/arrays"
 RESULT_TOPIC = "/result"
 
@@ -88,6 +91,7 @@ class TickMessage(_Message):
     outcomes: tuple[NodeOutcome, ...] = ()
     writes: tuple[Write, ...] = ()
     faults: tuple[NodeFault, ...] = ()
+    slow: tuple[SlowStep, ...] = ()
     keyframe: Keyframe | None = None
 
 
@@ -98,6 +102,23 @@ class ArrayMessage(_Message):
     shape: tuple[int, ...]
     compression: Literal["zstd"] = "zstd"
     data: str
+
+
+@dataclass(frozen=True, slots=True)
+class PausedLeaf:
+    """What a pause did to a leaf that ran, by the index of the leaf."""
+
+    node: int
+    policy: PausePolicy
+
+
+class PauseMessage(_Message):
+    """The mission was paused, or went on."""
+
+    state: Literal["paused", "resumed"]
+    time_s: float
+    by: str
+    leaves: tuple[PausedLeaf, ...] = ()
 
 
 class ActionReport(_Message):
@@ -126,11 +147,25 @@ class RunReport(_Message):
     recording: str | None
 
 
+class SlowNode(_Message):
+    """How often steps of a node took longer than they may, and the longest [s]."""
+
+    path: str
+    times: int
+    worst_s: float
+    budget_s: float
+
+
 class ResultMessage(_Message):
-    """The last message of a run that came to its end."""
+    """The last message of a run that came to its end.
+
+    `slow` has the slowest node first; `raised` is what went wrong without ending the mission.
+    """
 
     report: RunReport
     rate: RateReport
+    slow: tuple[SlowNode, ...] = ()
+    raised: tuple[str, ...] = ()
 
 
 COMPRESSED_IMAGE_SCHEMA: dict[str, JsonValue] = {

@@ -154,6 +154,7 @@ class Recording:
             outcomes=message.outcomes,
             writes=message.writes,
             faults=message.faults,
+            slow=message.slow,
         )
 
     def statuses(self, number: int) -> tuple[NodeStatus, ...]:

@@ -139,6 +139,7 @@ class RecordingWriter:
             outcomes=tuple(self._encoded_outcome(outcome) for outcome in tick.outcomes),
             writes=tuple(self._encoded_write(write) for write in tick.writes),
             faults=tick.faults,
+            slow=tick.slow,
             keyframe=keyframe,
         )
 

@@ -9,7 +9,7 @@ from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 from py_trees.composites import Selector, Sequence
 
-from executive.core.clock import ManualClock
+from executive.core.clock import ManualClock, MissionClock
 from executive.core.outcome import Outcome, failure
 from executive.core.world import StreamMessage
 from executive.engine.blackboard import Blackboard
@@ -23,6 +23,7 @@ from executive.engine.recording.messages import (
 from executive.engine.recording.reader import Recording
 from executive.engine.recording.writer import RecordingWriter
 from executive.engine.runner import Runner
+from executive.engine.supervision import Supervision
 
 RUNNING, SUCCESS, FAILURE = Status.RUNNING, Status.SUCCESS, Status.FAILURE
 
@@ -83,7 +84,14 @@ def built(root, blackboard=None, acting=()):
             visit(child, index, path)
 
     visit(root, None, "")
-    return SimpleNamespace(root=root, nodes=tuple(nodes), blackboard=blackboard, outputs=lambda: {})
+    return SimpleNamespace(
+        root=root,
+        nodes=tuple(nodes),
+        blackboard=blackboard,
+        clock=MissionClock(ManualClock()),
+        supervision=Supervision(),
+        outputs=lambda: {},
+    )
 
 
 def header_of(tree, mission="toy", seed=0):

@@ -1,0 +1,151 @@
+"""The leaf that runs a skill: its activations, its claims, its budget, its pauses."""
+
+import time
+from collections.abc import Callable, Mapping
+
+from py_trees.common import Status
+
+from executive.core.outcome import RUNNING, Outcome
+from executive.core.skill import PausePolicy, Port, Skill
+from executive.engine import porttypes
+from executive.engine.nodes import Leaf
+from executive.engine.scope import Scope, inputs_of
+from executive.engine.supervision import Supervision
+from executive.engine.values import Value
+
+
+class SkillBehaviour(Leaf):
+    """Drives a skill: started with its inputs, one step a tick, halted once when stopped."""
+
+    def __init__(
+        self,
+        name: str,
+        path: str,
+        skill: Skill,
+        *,
+        scope: Scope,
+        inputs: Mapping[str, Value],
+        defaults: Mapping[str, object],
+        outputs: Mapping[str, str],
+        ports: Mapping[str, Port],
+        supervision: Supervision,
+        budget_s: float | None = None,
+        stopwatch_s: Callable[[], float] = time.perf_counter,
+    ) -> None:
+        """Wire a skill.
+
+        Args:
+            name: Name of the node.
+            path: Its path, which is the writer of its outputs.
+            skill: The skill, bound to its devices.
+            scope: Names of its tree.
+            inputs: What its inputs are wired to.
+            defaults: Defaults of the inputs that have one.
+            outputs: Key by output port, for those that are wired.
+            ports: All its output ports.
+            supervision: What it answers to.
+            budget_s: How long a step may take [s]; what the skill says, or else the tree, if None.
+            stopwatch_s: The machine's clock.
+        """
+        super().__init__(name, path, supervision)
+        self._skill, self._scope = skill, scope
+        self._inputs, self._defaults, self._outputs = inputs, defaults, outputs
+        self._ports = ports
+        budgets_s = (budget_s, skill.BUDGET_S, supervision.budget_s, float("inf"))
+        self._budget_s = next(one for one in budgets_s if one is not None)
+        self._stopwatch_s = stopwatch_s
+        self._begins = False
+        self._kept: Outcome | Exception | None = None
+
+    def initialise(self) -> None:
+        """Begin a new activation, which starts in the update that follows."""
+        self.outcome, self._kept, self._begins = None, None, True
+
+    def answer(self) -> Outcome:
+        """Do one tick's share of the work; outputs are written when it succeeds.
+
+        Raises:
+            ClaimError: What it claims is held by a node that goes on.
+        """
+        outcome = self._taken() if self._kept is not None else self._advance()
+        for port, key in self._outputs.items():
+            if port in outcome.outputs:
+                self._scope.write(key, outcome.outputs[port], self._path)
+        return outcome
+
+    def terminate(self, _: Status) -> None:
+        """Halt the skill if it still runs, and give back what it claimed."""
+        self._begins, self._kept = False, None
+        try:
+            self._skill.halt()
+        finally:
+            self._supervision.claims.release(self._path)
+
+    def pause(self) -> PausePolicy:
+        """Do to the skill what a pause does to it; return what that was."""
+        policy = self._skill.PAUSE
+        if policy is PausePolicy.STOP:
+            self._begins = True
+            self._skill.halt()
+        elif policy is PausePolicy.HOLD and self._skill.active:
+            self._skill.on_pause()
+        return policy
+
+    def step_in_pause(self) -> None:
+        """Let a skill that is to finish do another step; the tree takes its answer later."""
+        if self._finishing:
+            try:
+                outcome = self._advance()
+            except Exception as cause:  # raised where the tree takes the answer
+                self._kept = cause
+            else:
+                self._kept = None if outcome is RUNNING else outcome
+
+    @property
+    def settled(self) -> bool:
+        """Whether the pause has done to it what it does: nothing moves any more."""
+        return not self._finishing and self._skill.resting()
+
+    def resume(self) -> None:
+        """Go on after a pause."""
+        if self._skill.PAUSE is PausePolicy.HOLD and self._skill.active:
+            self._skill.on_resume()
+
+    @property
+    def _finishing(self) -> bool:
+        finishes = self._skill.PAUSE is PausePolicy.FINISH and self._skill.active
+        return finishes and self._kept is None
+
+    def _advance(self) -> Outcome:
+        if self._begins:
+            if not self._supervision.claims.take(self._path, self._skill.CLAIMS):
+                return RUNNING
+            self._begins = False
+            self._skill.start(inputs_of(self._inputs, self._defaults, self._scope))
+        began_s = self._stopwatch_s()
+        outcome = self._skill.step()
+        seconds = self._stopwatch_s() - began_s
+        if seconds > self._budget_s:
+            self._supervision.note_late(self._path, seconds, self._budget_s)
+        for port, value in outcome.outputs.items():
+            self._check(port, value)
+        return outcome
+
+    def _taken(self) -> Outcome:
+        kept, self._kept = self._kept, None
+        if isinstance(kept, Exception):
+            raise kept
+        assert kept is not None
+        return kept
+
+    def _check(self, port: str, value: object) -> None:
+        try:
+            porttypes.check(value, self._ports[port].type)
+        except ValueError as error:
+            raise TypeError(f"output {port!r}: {error}") from None
+
+    def _clean_up(self) -> None:
+        try:
+            self._skill.halt()
+        except Exception as cause:  # the one that made it necessary is told already
+            self._supervision.note_raised(self._path, cause)
