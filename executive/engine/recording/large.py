@@ -42,6 +42,7 @@ class LargeValues:
             IMAGES_TOPIC: {},
             ARRAYS_TOPIC: {},
         }
+        self._counts = {IMAGES_TOPIC: 0, ARRAYS_TOPIC: 0}
         self._stored_s: dict[str, float] = {}
         self._key, self._time_s = "", 0.0
 
@@ -57,13 +58,21 @@ class LargeValues:
         """Return the number of an array, None where it is left out."""
         return self._number(ARRAYS_TOPIC, array)
 
+    def carry(self, topic: str, number: int) -> bool:
+        """Take note of a message of an earlier recording; return whether it was a large value."""
+        if topic not in self._counts:
+            return False
+        self._counts[topic] = max(self._counts[topic], number + 1)
+        return True
+
     def _number(self, topic: str, array: Array) -> int | None:
         numbers = self._numbers[topic]
         content = (array.dtype.name, array.shape, array_hash(array))
         if content not in numbers:
             if not self._allowed():
                 return None
-            numbers[content] = len(numbers)
+            numbers[content] = self._counts[topic]
+            self._counts[topic] += 1
             self._store(topic, array, numbers[content])
         return numbers[content]
 

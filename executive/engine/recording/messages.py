@@ -20,6 +20,7 @@ MISSION_TOPIC = "/mission"
 TICKS_TOPIC = "/ticks"
 IMAGES_TOPIC = "/images"
 PAUSES_TOPIC = "/pauses"
+INTERVENTIONS_TOPIC = "/interventions"
 ARRAYS_TOPIC = "/arrays"
 RESULT_TOPIC = "/result"
 
@@ -49,6 +50,16 @@ class RecordedNode(_Message):
     acts: bool = False
 
 
+class ResumedFrom(_Message):
+    """The recording that this one goes on from, and begins with a copy of."""
+
+    file: str
+    checkpoint: int
+    node: str
+    tick: int
+    time_s: float
+
+
 class MissionHeader(_Message):
     """The first message: what is run, from which files, with what."""
 
@@ -65,6 +76,7 @@ class MissionHeader(_Message):
     nodes: tuple[RecordedNode, ...]
     versions: dict[str, str] = Field(default_factory=dict)
     started_utc: str
+    resumed_from: ResumedFrom | None = None
 
 
 class Keyframe(_Message):
@@ -119,6 +131,18 @@ class PauseMessage(_Message):
     time_s: float
     by: str
     leaves: tuple[PausedLeaf, ...] = ()
+
+
+class InterventionMessage(_Message):
+    """Something outside the tree answers in the place of a node, or no longer does.
+
+    `what` says it in words, such as `force failure once`; `by` says who asked for it.
+    """
+
+    tick: int
+    node: int
+    what: str
+    by: str
 
 
 class ActionReport(_Message):

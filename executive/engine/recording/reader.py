@@ -19,6 +19,7 @@ from zstandard import ZstdError
 from executive.core.errors import RecordingError
 from executive.core.outcome import Reason
 from executive.core.world import StreamMessage
+from executive.engine.checkpoints.messages import CHECKPOINTS_TOPIC
 from executive.engine.recording.large import array_of, image_of
 from executive.engine.recording.messages import (
     ARRAYS_TOPIC,
@@ -219,10 +220,18 @@ class Recording:
                 return message.data
         raise RecordingError(f"{self.path}: {topic} has no message {number}")
 
+    def messages(self, topic: str) -> Iterator[bytes]:
+        """Return the messages of one channel as they are stored, in order."""
+        return (message.data for _, _, message in _Reading(self.path).messages((topic,)))
+
+    def in_file_order(self) -> Iterator[tuple[Schema | None, Channel, Message]]:
+        """Return every message as it stands in the file, in the order of writing."""
+        return _Reading(self.path).in_file_order()
+
     def streams(self) -> Iterator[StreamMessage]:
         """Return what the cell streamed, in the order of time."""
         for schema, channel, message in _Reading(self.path).messages(None):
-            if channel.topic not in (*_OWN_TOPICS, IMAGES_TOPIC, ARRAYS_TOPIC):
+            if channel.topic not in (*_OWN_TOPICS, IMAGES_TOPIC, ARRAYS_TOPIC, CHECKPOINTS_TOPIC):
                 name = "" if schema is None else schema.name
                 yield StreamMessage(channel.topic, name, message.log_time / 1e9, message.data)
 
@@ -262,6 +271,17 @@ class _Reading:
             with self._path.open("rb") as file:
                 yield from _messages_of(file, topics)
             self.complete = True
+        except OSError as cause:
+            raise _no_recording(self._path, cause.strerror or str(cause)) from cause
+        except _BROKEN:
+            return
+
+    def in_file_order(self) -> Iterator[tuple[Schema | None, Channel, Message]]:
+        """Return every message in the order of writing, up to where the file is broken."""
+        try:
+            with self._path.open("rb") as file:
+                reader = NonSeekingReader(file, validate_crcs=True)
+                yield from reader.iter_messages(log_time_order=False)
         except OSError as cause:
             raise _no_recording(self._path, cause.strerror or str(cause)) from cause
         except _BROKEN:

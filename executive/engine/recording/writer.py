@@ -14,8 +14,9 @@ from pathlib import Path
 from types import TracebackType
 from typing import Self
 
+from mcap.records import Message, Schema
 from mcap.writer import CompressionType, Writer
-from pydantic import BaseModel
+from pydantic import BaseModel, JsonValue
 
 from executive.core.errors import RecordingError
 from executive.core.outcome import Reason
@@ -32,6 +33,7 @@ from executive.engine.recording.messages import (
     ResultMessage,
     TickMessage,
 )
+from executive.engine.recording.reader import Recording
 from executive.engine.recording.values import ValueEncoder
 from executive.engine.ticks import NodeOutcome, NodeStatus, Tick
 
@@ -110,6 +112,58 @@ class RecordingWriter:
         """Write what the run came to."""
         with self._guarded():
             self._write_model(RESULT_TOPIC, result)
+
+    def encoded(self, key: str, value: object, time_s: float) -> JsonValue:
+        """Return the JSON form of a value, with what is large stored under that key."""
+        self._time_s = time_s
+        with self._guarded():
+            self._large.begin(key, time_s)
+            return self._encoder.encode(value)
+
+    def write_now(self, topic: str, message: BaseModel, time_s: float, number: int) -> None:
+        """Write a message that a kill in the next moment does not take back."""
+        self._time_s = time_s
+        with self._guarded():
+            self._write_model(topic, message, sequence=number)
+            self._flush()
+
+    def carry_over(self, earlier: Recording, topic: str, last: int) -> None:
+        """Begin with all of an earlier recording of the same mission up to one message.
+
+        Args:
+            earlier: The recording.
+            topic: Channel of that message.
+            last: Its number.
+        """
+        with self._guarded():
+            for schema, channel, message in earlier.in_file_order():
+                if schema is not None and channel.topic != MISSION_TOPIC:
+                    self._carry(schema, channel.topic, message)
+                if (channel.topic, message.sequence) == (topic, last):
+                    break
+            self._flush()
+
+    def _carry(self, schema: Schema, topic: str, message: Message) -> None:
+        if topic == TICKS_TOPIC:
+            self._follow(TickMessage.model_validate_json(message.data))
+        large = self._large.carry(topic, message.sequence)
+        if large:
+            self._flush()
+        channel = self._channel(topic, schema.name, json.loads(schema.data))
+        self._mcap.add_message(
+            channel, message.log_time, message.data, message.publish_time, message.sequence
+        )
+        if large:
+            self._flush()
+
+    def _follow(self, tick: TickMessage) -> None:
+        """Take note of a tick that was written by an earlier writer."""
+        for node, status in tick.changes:
+            self._statuses[node] = status
+        self._written.update((write.key, tick.tick) for write in tick.writes)
+        self._ended.update((outcome.node, tick.tick) for outcome in tick.outcomes)
+        self._visited = self._visited if tick.visited is None else tick.visited
+        self._time_s = tick.time_s
 
     def close(self) -> None:
         """Write the index and close the file; closing twice does nothing."""

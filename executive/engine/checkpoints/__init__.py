@@ -1,0 +1,1 @@
+"""Checkpoints of a run: taken while it goes on, gone on from after it was killed."""
