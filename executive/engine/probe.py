@@ -15,7 +15,9 @@ from py_trees.common import Status as TreeStatus
 from executive.core.errors import NodeError
 from executive.core.outcome import Outcome, Reason
 from executive.engine.builder import BuiltTree
+from executive.engine.checkpoints.past import Past
 from executive.engine.direct import Event
+from executive.engine.interception import Interceptor
 from executive.engine.ticking import NODE_STATUS, DirectTicks
 from executive.engine.ticks import (
     RUNNER,
@@ -37,11 +39,16 @@ _Moves = tuple[tuple[int, ...], tuple[tuple[int, NodeStatus], ...], tuple[Halt, 
 class TreeProbe:
     """Watches one tree from its first tick to its last."""
 
-    def __init__(self, tree: BuiltTree) -> None:
-        """Begin with what the nodes are before the first tick."""
+    def __init__(self, tree: BuiltTree, intercept: Interceptor | None = None) -> None:
+        """Begin with what the nodes are before the first tick.
+
+        Args:
+            tree: The tree.
+            intercept: What stands between each node and its parent.
+        """
         self._tree = tree
         self.behaviours: tuple[Behaviour, ...] = tuple(node.behaviour for node in tree.nodes)
-        self._direct = DirectTicks(tree.root, self.behaviours)
+        self._direct = DirectTicks(tree.root, self.behaviours, intercept)
         self._index = {id(behaviour): i for i, behaviour in enumerate(self.behaviours)}
         self._parents = tuple(node.parent for node in tree.nodes)
         self._statuses = [INVALID] * len(self.behaviours)
@@ -53,8 +60,24 @@ class TreeProbe:
             not behaviour.children or hasattr(behaviour, "outcome") for behaviour in self.behaviours
         )
         self._told: dict[int, tuple[int, NodeStatus, Reason | None]] = {}
+        self._earlier: tuple[Event, ...] = ()
         self.reasons: dict[int, Reason] = {}
         self.raised: Behaviour | None = None
+
+    def go_on(self, past: Past) -> None:
+        """Begin with a tick that was under way instead of with the first one."""
+        self._statuses, self._earlier = list(past.statuses), past.events
+        self._told, self.reasons = dict(past.told), dict(past.reasons)
+
+    def so_far(self) -> tuple[tuple[Event, ...], tuple[NodeOutcome, ...]]:
+        """Return what was answered in the tick that is under way, and how nodes ended in it."""
+        events = (*self._earlier, *self._direct.log.events)
+        ends = (
+            NodeOutcome(node, status, self._reason(node))
+            for node, status in events
+            if self._speaks[node] and status not in (RUNNING, INVALID)
+        )
+        return events, tuple(ends)
 
     @property
     def answer(self) -> NodeStatus:
@@ -120,6 +143,8 @@ class TreeProbe:
     def _moves(self) -> _Moves:
         """Return visits, changes and halts of the tick that the log is about."""
         log = self._direct.log
+        if self._earlier:
+            log.events[:0], self._earlier = self._earlier, ()
         if self._plain and not log.unseen and log.events == self._events:
             return self._visited, (), ()  # the same answers as in the tick before
         self._events = events = log.events.copy()
@@ -156,8 +181,7 @@ class TreeProbe:
         for node, status in self._events:
             if not self._speaks[node] or status is RUNNING or status is INVALID:
                 continue
-            outcome = getattr(self.behaviours[node], "outcome", None)
-            reason = outcome.reason if isinstance(outcome, Outcome) else None
+            reason = self._reason(node)
             if reason is not None:
                 self.reasons[node] = reason
             elif self.reasons.pop(node, None) is None and self.behaviours[node].children:
@@ -165,6 +189,10 @@ class TreeProbe:
             last, self._told[node] = self._told.get(node), (number, status, reason)
             if last is None or last[:2] != (number - 1, status) or not _alike(last[2], reason):
                 yield NodeOutcome(node, status, reason)
+
+    def _reason(self, node: int) -> Reason | None:
+        outcome = getattr(self.behaviours[node], "outcome", None)
+        return outcome.reason if isinstance(outcome, Outcome) else None
 
     def error_of(self, behaviour: Behaviour, number: int, cause: BaseException) -> NodeError:
         """Return what a node raised, with the path and type of the node and the tick."""

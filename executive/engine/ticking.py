@@ -19,6 +19,7 @@ from py_trees.decorators import Decorator, OneShot
 from executive.engine import direct
 from executive.engine.decorators import Gated
 from executive.engine.direct import Spot, StopCall, TickCall, TickLog
+from executive.engine.interception import Interceptor, Junction
 from executive.engine.parallel import Parallel
 from executive.engine.ticks import NodeStatus
 
@@ -49,13 +50,20 @@ class DirectTicks:
         log: What happened since `tick` was called.
     """
 
-    def __init__(self, root: Behaviour, nodes: Sequence[Behaviour]) -> None:
+    def __init__(
+        self,
+        root: Behaviour,
+        nodes: Sequence[Behaviour],
+        intercept: Interceptor | None = None,
+    ) -> None:
         """Look at every node once.
 
         Args:
             root: Root of the tree.
             nodes: Nodes by index; what others answer is not noted.
+            intercept: What stands between each of these nodes and its parent.
         """
+        self._intercept = intercept
         self.log = TickLog()
         self._index = {id(node): i for i, node in enumerate(nodes)}
         self._ticks: dict[int, TickCall] = {}
@@ -86,8 +94,11 @@ class DirectTicks:
         )
         stop_of, tick_of = _STOPS.get(type(node).stop), _TICKS.get(type(node).tick)
         stop = stop_of(spot) if stop_of else foreign.stop
+        tick = tick_of(replace(spot, stop=stop)) if tick_of else foreign.tick
+        if self._intercept is not None and spot.index >= 0:
+            tick = self._intercept(Junction(spot.index, node, tick, stop, self.log))
         self._stops[id(node)] = stop
-        self._ticks[id(node)] = tick_of(replace(spot, stop=stop)) if tick_of else foreign.tick
+        self._ticks[id(node)] = tick
 
 
 class _Foreign:

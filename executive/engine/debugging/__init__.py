@@ -1,0 +1,1 @@
+"""Breakpoints, stepping and forced answers while a mission runs."""
