@@ -82,7 +82,8 @@ def test_faults_of_all_nodes_come_in_one_pass_with_their_places():
     )
     assert sorted(faults_of(text)) == [
         "t.yaml:5:18: t/a: unknown key 'nmae'; did you mean 'name'? "
-        "(known: about, budget_s, if, in, name, on_failure, on_halt, on_success, out, skill, unless, while)",
+        "(known: about, budget_s, if, in, name, on_failure, on_halt, on_success, out, skill, "
+        "unless, while)",
         "t.yaml:6:22: t/retry: times: expected an integer; got 'x'",
         "t.yaml:6:32: t/retry/?: unknown kind of node 'skil'; did you mean 'skill'? (known: "
         "cooldown, for_each, force_failure, force_success, inverter, parallel, "
