@@ -139,7 +139,13 @@ def _recorded_run(request: _Request, control: RunControl, console: Console) -> _
         with control.interruptible(), console.status(f"opening {mission.document.cell}"):
             cell = open_cell(mission.cell, settings.scenario, request.seed)
         stack.enter_context(closing(cell))
-        tree = build(mission, devices=cell.devices, clock=cell.clock, inputs=settings.inputs)
+        tree = build(
+            mission,
+            devices=cell.devices,
+            clock=cell.clock,
+            inputs=settings.inputs,
+            seed=request.seed,
+        )
         live = [stack.enter_context(closing(_live_view(console)))] if request.view else []
         with RunDisplay(console, recorded_nodes(tree.nodes)) as display:
             done = run_mission(plan, tree, cell, control, (display, *live))

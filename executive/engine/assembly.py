@@ -11,30 +11,45 @@ from py_trees.composites import Sequence as SequenceNode
 from py_trees.decorators import FailureIsSuccess, Inverter, OneShot, SuccessIsFailure
 
 from executive.core.clock import Clock
-from executive.engine.decorators import Cooldown, ForEach, Guard, Repeat, Retry, Timeout
+from executive.engine.amounts import Amount
+from executive.engine.choosing import IfThenElse, Switch
+from executive.engine.decorators import (
+    Cooldown,
+    ForEach,
+    Guard,
+    Repeat,
+    Retry,
+    Timeout,
+    WhileRunning,
+)
 from executive.engine.document import (
+    CasesBody,
+    ChanceNode,
     CooldownBody,
+    FailNode,
     ForEachBody,
     NodeModel,
+    ObserveBody,
     ParallelBody,
     RepeatBody,
     RetryBody,
+    RunOnceBody,
     SetNode,
+    SwitchBody,
     TimeoutBody,
+    UnsetNode,
+    WaitForNode,
+    WaitNode,
     WhenNode,
 )
 from executive.engine.expression import parse_expression
+from executive.engine.leaves import Chance, Fail, Unset, Wait, WaitFor
 from executive.engine.nodes import Assignment, Condition
+from executive.engine.observing import Observe
 from executive.engine.parallel import Parallel
 from executive.engine.scope import Scope
 from executive.engine.supervision import Supervision
 from executive.engine.values import parse_value
-
-_ENDS = {
-    "on_success": Status.SUCCESS,
-    "on_failure": Status.FAILURE,
-    "on_halt": Status.INVALID,
-}
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,6 +64,7 @@ class Site:
         supervision: What its leaves answer to.
         children: Its children, in order.
         names: Their names in the file, in order.
+        seed: Seed of the run.
     """
 
     name: str
@@ -58,6 +74,7 @@ class Site:
     supervision: Supervision
     children: Sequence[Behaviour]
     names: Sequence[str]
+    seed: int
 
     @property
     def child(self) -> Behaviour:
@@ -95,19 +112,78 @@ def _parallel(model: ParallelBody, site: Site) -> Behaviour:
 
 
 def _retry(model: RetryBody, site: Site) -> Behaviour:
-    return Retry(site.name, site.child, times=model.times, delay_s=model.delay_s, clock=site.clock)
+    times, delay_s = (Amount(model, key, site.scope) for key in ("times", "delay_s"))
+    return Retry(
+        *(site.name, site.child),
+        times=times,
+        delay_s=delay_s,
+        backoff=model.backoff,
+        clock=site.clock,
+    )
 
 
 def _repeat(model: RepeatBody, site: Site) -> Behaviour:
-    return Repeat(site.name, site.child, times=model.times)
+    times, delay_s = (Amount(model, key, site.scope) for key in ("times", "delay_s"))
+    return Repeat(site.name, site.child, times=times, delay_s=delay_s, clock=site.clock)
 
 
 def _timeout(model: TimeoutBody, site: Site) -> Behaviour:
-    return Timeout(site.name, site.child, seconds=model.seconds, clock=site.clock)
+    seconds = Amount(model, "seconds", site.scope)
+    return Timeout(site.name, site.child, seconds=seconds, clock=site.clock)
 
 
 def _cooldown(model: CooldownBody, site: Site) -> Behaviour:
-    return Cooldown(site.name, site.child, seconds=model.seconds, clock=site.clock)
+    seconds = Amount(model, "seconds", site.scope)
+    return Cooldown(site.name, site.child, seconds=seconds, clock=site.clock)
+
+
+def _run_once(model: RunOnceBody, site: Site) -> Behaviour:
+    policies = {
+        "finished": OneShotPolicy.ON_COMPLETION,
+        "success": OneShotPolicy.ON_SUCCESSFUL_COMPLETION,
+    }
+    return OneShot(site.name, site.child, policies[model.until])
+
+
+def _observe(model: ObserveBody, site: Site) -> Behaviour:
+    keys = {
+        field: reference and reference.removeprefix("$")
+        for field, reference in (("status", model.status), ("counts", model.counts))
+    }
+    return Observe(site.name, site.path, site.child, **keys, scope=site.scope)
+
+
+def _switch(model: CasesBody, site: Site) -> Behaviour:
+    return Switch(
+        *(site.name, site.children),
+        on=parse_expression(model.on),
+        cases=[*model.cases],
+        scope=site.scope,
+        memory=isinstance(model, SwitchBody),
+    )
+
+
+def _wait(model: WaitNode, site: Site) -> Behaviour:
+    seconds = Amount(model, "wait", site.scope)
+    return Wait(site.name, site.path, seconds, site.clock, site.supervision)
+
+
+def _wait_for(model: WaitForNode, site: Site) -> Behaviour:
+    expression = parse_expression(model.wait_for)
+    return WaitFor(site.name, site.path, expression, site.scope, site.supervision)
+
+
+def _fail(model: FailNode, site: Site) -> Behaviour:
+    return Fail(site.name, site.path, model.fail, model.text, site.supervision)
+
+
+def _unset(model: UnsetNode, site: Site) -> Behaviour:
+    return Unset(site.name, site.path, model.keys, site.scope, site.supervision)
+
+
+def _chance(model: ChanceNode, site: Site) -> Behaviour:
+    probability = Amount(model, "chance", site.scope)
+    return Chance(site.name, site.path, probability, site.seed, site.supervision)
 
 
 def _for_each(model: ForEachBody, site: Site) -> Behaviour:
@@ -134,7 +210,19 @@ _ASSEMBLERS: Mapping[str, Callable[[Any, Site], Behaviour]] = {
     "timeout": _timeout,
     "cooldown": _cooldown,
     "for_each": _for_each,
-    "run_once": lambda _, site: OneShot(site.name, site.child, OneShotPolicy.ON_COMPLETION),
+    "run_once": _run_once,
+    "if_then_else": lambda _, site: IfThenElse(site.name, site.children, memory=True),
+    "while_do_else": lambda _, site: IfThenElse(site.name, site.children, memory=False),
+    "switch": _switch,
+    "reactive_switch": _switch,
+    "observe": _observe,
+    "running_is_success": lambda _, site: WhileRunning(site.name, site.child, says=Status.SUCCESS),
+    "running_is_failure": lambda _, site: WhileRunning(site.name, site.child, says=Status.FAILURE),
+    "unset": _unset,
+    "wait": _wait,
+    "wait_for": _wait_for,
+    "fail": _fail,
+    "chance": _chance,
     "inverter": lambda _, site: Inverter(site.name, site.child),
     "force_success": lambda _, site: FailureIsSuccess(site.name, site.child),
     "force_failure": lambda _, site: SuccessIsFailure(site.name, site.child),
@@ -149,7 +237,7 @@ def guard(model: NodeModel, name: str, path: str, child: Behaviour, scope: Scope
         child,
         conditions={key: parse_expression(text) for key, text in model.guards.items()},
         assignments={
-            _ENDS[keyword]: {key: parse_expression(text) for key, text in texts.items()}
+            keyword: {key: parse_expression(text) for key, text in texts.items()}
             for keyword, texts in model.endings.items()
         },
         scope=scope,

@@ -4,7 +4,9 @@ It belongs to one tree and to nothing else: py_trees' own is one for the whole p
 two missions would see each other's values (trap e11).
 """
 
+from collections.abc import Iterable
 from dataclasses import dataclass
+from enum import Enum
 
 
 @dataclass(frozen=True, slots=True)
@@ -13,13 +15,20 @@ class Write:
 
     Attributes:
         key: `TREE/PATH:name`, where the path is that of the root of the tree that owns it.
-        value: The value itself, not a copy: values on the blackboard are never changed.
+        value: The value itself, not a copy: values on the blackboard are never changed;
+            `Unset.UNSET` where the key has none from then on.
         writer: Path of the node that wrote it; `""` for an input of the mission.
     """
 
     key: str
     value: object
     writer: str
+
+
+class Unset(Enum):
+    """What stands for the value in the record of a write that took it away."""
+
+    UNSET = "unset"
 
 
 class Blackboard:
@@ -34,6 +43,12 @@ class Blackboard:
         """Set a key."""
         self._values[key] = value
         self._writes.append(Write(key, value, writer))
+
+    def unset(self, key: str, writer: str) -> None:
+        """Take the value of a key away; nothing happens where it has none."""
+        if key in self._values:
+            del self._values[key]
+            self._writes.append(Write(key, Unset.UNSET, writer))
 
     def read(self, key: str) -> object:
         """Return the value of a key.
@@ -50,7 +65,32 @@ class Blackboard:
         """Return every key that has been written, in the order of first writes."""
         return tuple(self._values)
 
+    @property
+    def pending_writes(self) -> tuple[Write, ...]:
+        """The writes that `drain_writes` would return."""
+        return tuple(self._writes)
+
+    def restore(self, values: Iterable[Write], pending: Iterable[Write]) -> None:
+        """Hold what these writes leave behind, and nothing else.
+
+        Args:
+            values: Writes that have been drained.
+            pending: Later writes, which `drain_writes` has yet to return.
+        """
+        self._values, self._writes = {}, []
+        for write in values:
+            self._put(write)
+        for write in pending:
+            self._put(write)
+            self._writes.append(write)
+
     def drain_writes(self) -> list[Write]:
         """Return the writes since the last call, in order."""
         writes, self._writes = self._writes, []
         return writes
+
+    def _put(self, write: Write) -> None:
+        if write.value is Unset.UNSET:
+            self._values.pop(write.key, None)
+        else:
+            self._values[write.key] = write.value

@@ -17,6 +17,7 @@ from executive.core.registry import closest
 from executive.core.skill import input_ports
 from executive.engine.assembly import Site, assemble, guard
 from executive.engine.blackboard import Blackboard
+from executive.engine.checkpoints.node import CheckpointGate, CheckpointSignal
 from executive.engine.devices import bind
 from executive.engine.document import SkillNode, SubtreeNode
 from executive.engine.loader import Mission, Program
@@ -70,6 +71,7 @@ class BuiltTree:
         root: The root node.
         nodes: Every node, depth first.
         blackboard: Its values.
+        checkpoints: Says when a node with a checkpoint is about to start.
         clock: The cell's clock less pauses, which the runner tells it.
         supervision: What its leaves answer to.
         scope: The names of the outermost tree.
@@ -79,6 +81,7 @@ class BuiltTree:
     root: Behaviour
     nodes: tuple[NodeInfo, ...]
     blackboard: Blackboard
+    checkpoints: CheckpointSignal
     clock: MissionClock
     supervision: Supervision
     scope: Scope
@@ -97,6 +100,7 @@ def build(
     devices: Mapping[str, object],
     clock: Clock,
     inputs: Mapping[str, object] = MappingProxyType({}),
+    seed: int = 0,
 ) -> BuiltTree:
     """Build a checked mission or tree.
 
@@ -105,6 +109,7 @@ def build(
         devices: Devices of the cell, by name.
         clock: The cell's clock; timeouts and delays are on it, less pauses.
         inputs: Values of its inputs by name: as in YAML, or of the declared type.
+        seed: Seed of the run, for nodes that leave things to chance.
 
     Raises:
         InputError: An input is unknown, missing or does not fit.
@@ -115,7 +120,7 @@ def build(
     for name, value in _inputs(program.tree, inputs).items():
         scope.write(name, value, writer="")
     mission_clock, supervision = MissionClock(clock), _supervision(program)
-    builder = _Builder(program, devices, mission_clock, blackboard, supervision)
+    builder = _Builder(program, devices, mission_clock, blackboard, supervision, seed)
     root = builder.build(program.tree.root, _Place(program.tree.name, None, scope, program.tree))
     if builder.faults:
         raise DocumentError(sorted(set(builder.faults)))
@@ -124,6 +129,7 @@ def build(
         root,
         nodes,
         blackboard,
+        builder.checkpoints,
         mission_clock,
         supervision,
         scope,
@@ -184,32 +190,46 @@ class _Builder:
         clock: Clock,
         blackboard: Blackboard,
         supervision: Supervision,
+        seed: int,
     ) -> None:
         self._program, self._devices = program, devices
         self._clock, self._blackboard = clock, blackboard
-        self._supervision = supervision
+        self._supervision, self._seed = supervision, seed
         self.nodes: list[NodeInfo | None] = []
         self.faults: list[Fault] = []
-        self._guard_paths: set[str] = set()
+        self.checkpoints = CheckpointSignal()
+        self._paths_around: set[str] = set()
 
     def build(self, spec: NodeSpec, place: _Place) -> Behaviour:
         """Build a node and everything below it."""
         if not spec.model.guards and not spec.model.endings:
-            return self._bare(spec, place)
+            return self._unguarded(spec, place)
         index = self._reserve()
-        child = self._bare(spec, _Place(place.path, index, place.scope, place.tree))
+        child = self._unguarded(spec, _Place(place.path, index, place.scope, place.tree))
         behaviour = guard(spec.model, place.name, place.path, child, place.scope)
-        site = _Place(self._guard_path(place.path), place.parent, place.scope, place.tree)
+        path = self._path_around(place.path, "guard")
+        site = _Place(path, place.parent, place.scope, place.tree)
         self._fill(index, spec, site, behaviour, "guard")
         return behaviour
 
-    def _guard_path(self, path: str) -> str:
-        """Return a path for a guard; a subtree and the root in its place may both have one."""
-        path = f"{path}.guard"
-        while path in self._guard_paths:
-            path = f"{path}.guard"
-        self._guard_paths.add(path)
+    def _path_around(self, path: str, kind: str) -> str:
+        """Return the path of a node around one; a subtree and its root may both have some."""
+        path = f"{path}.{kind}"
+        while path in self._paths_around:
+            path = f"{path}.{kind}"
+        self._paths_around.add(path)
         return path
+
+    def _unguarded(self, spec: NodeSpec, place: _Place) -> Behaviour:
+        if not spec.model.checkpoint:
+            return self._bare(spec, place)
+        index = self._reserve()
+        child = self._bare(spec, _Place(place.path, index, place.scope, place.tree))
+        gate = CheckpointGate(place.name, child, index=index, signal=self.checkpoints)
+        path = self._path_around(place.path, CheckpointGate.KIND)
+        site = _Place(path, place.parent, place.scope, place.tree)
+        self._fill(index, spec, site, gate, CheckpointGate.KIND)
+        return gate
 
     def _bare(self, spec: NodeSpec, place: _Place) -> Behaviour:
         if isinstance(spec.model, SubtreeNode):
@@ -233,6 +253,7 @@ class _Builder:
                 self._supervision,
                 children,
                 names,
+                self._seed,
             )
             behaviour = assemble(spec.model, site)
         self._fill(index, spec, place, behaviour, spec.model.kind)
@@ -278,7 +299,7 @@ class _Builder:
         self, index: int, spec: NodeSpec, place: _Place, behaviour: Behaviour, kind: str
     ) -> None:
         line, column = spec.mark
-        runs_skill = isinstance(spec.model, SkillNode) and kind != "guard"
+        runs_skill = isinstance(spec.model, SkillNode) and kind == SkillNode.kind
         acts = runs_skill and self._program.skills.get(label(spec.model)).ACTS
         self.nodes[index] = NodeInfo(
             index=index,

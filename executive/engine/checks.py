@@ -6,6 +6,7 @@ from typing import Any
 from executive.core.errors import Fault, InputError
 from executive.core.registry import Registry, closest
 from executive.core.skill import Port, Skill
+from executive.engine.cases import case_faults
 from executive.engine.flow import find_early_reads
 from executive.engine.inference import infer
 from executive.engine.keys import KeyTable
@@ -68,6 +69,8 @@ class _WiringCheck:
             self._complain(node, use, f"expected true or false, got {type_name(kind)}; try {hint}")
         if use.port is not None:
             self._input(node, use, use.port, kind)
+        for case, fault in case_faults(use.cases, kind):
+            self._faults.append(node.fault(fault, "cases", case))
 
     def _input(self, node: NodeSpec, use: Use, port: Port, kind: Any) -> None:
         key = key_of(use.value)

@@ -14,10 +14,17 @@ from py_trees.decorators import Decorator
 from executive.core.clock import Clock
 from executive.core.errors import InputError
 from executive.core.outcome import Outcome, failure
+from executive.engine.amounts import Number, number
 from executive.engine.expression import Expression
 from executive.engine.nodes import answer, assign
 from executive.engine.scope import Scope, evaluate
 from executive.engine.values import Value
+
+_ENDS = {
+    Status.SUCCESS: "on_success",
+    Status.FAILURE: "on_failure",
+    Status.INVALID: "on_halt",
+}
 
 
 class Gated(Decorator):
@@ -67,15 +74,33 @@ class Retry(Gated):
     """Runs the child again when it fails; at most one attempt in a tick."""
 
     def __init__(
-        self, name: str, child: Behaviour, *, times: int, delay_s: float, clock: Clock
+        self,
+        name: str,
+        child: Behaviour,
+        *,
+        times: Number,
+        delay_s: Number = 0.0,
+        backoff: float = 1.0,
+        clock: Clock,
     ) -> None:
-        """Allow `times` attempts with a pause after each failure [s]."""
+        """Allow some attempts.
+
+        Args:
+            name: Name of the node.
+            child: The child.
+            times: Attempts in all.
+            delay_s: Pause after the first failure [s].
+            backoff: Factor by which the pause grows with every failure.
+            clock: What the pauses are measured on.
+        """
         super().__init__(name, child)
-        self._times, self._delay_s, self._clock = times, delay_s, clock
+        self._asked, self._backoff, self._clock = (times, delay_s), backoff, clock
+        self._times, self._delay_s = 0.0, 0.0
         self._failures, self._resume_s = 0, 0.0
 
     def initialise(self) -> None:
-        """Forget earlier attempts."""
+        """Forget earlier attempts, and take the numbers as they are now."""
+        self._times, self._delay_s = map(number, self._asked)
         self._failures, self._resume_s = 0, self._clock.now_s()
 
     def before(self) -> Status | None:
@@ -88,39 +113,52 @@ class Retry(Gated):
             return self.decorated.status
         self._failures += 1
         self._resume_s = self._clock.now_s() + self._delay_s
+        self._delay_s *= self._backoff
         return Status.FAILURE if self._failures >= self._times else Status.RUNNING
 
 
 class Repeat(Gated):
     """Runs the child again when it succeeds; at most one round in a tick."""
 
-    def __init__(self, name: str, child: Behaviour, *, times: int) -> None:
-        """Ask for `times` successes."""
+    def __init__(
+        self, name: str, child: Behaviour, *, times: Number, delay_s: Number = 0.0, clock: Clock
+    ) -> None:
+        """Ask for `times` successes with a pause after each [s]."""
         super().__init__(name, child)
-        self._times, self._successes = times, 0
+        self._asked, self._clock = (times, delay_s), clock
+        self._times, self._delay_s = 0.0, 0.0
+        self._successes, self._resume_s = 0, 0.0
 
     def initialise(self) -> None:
-        """Forget earlier rounds."""
-        self._successes = 0
+        """Forget earlier rounds, and take the numbers as they are now."""
+        self._times, self._delay_s = map(number, self._asked)
+        self._successes, self._resume_s = 0, self._clock.now_s()
+
+    def before(self) -> Status | None:
+        """Wait until the pause is over."""
+        return Status.RUNNING if self._clock.now_s() < self._resume_s else None
 
     def update(self) -> Status:
         """Count a success and go on, unless it was the last round."""
         if self.decorated.status is not Status.SUCCESS:
             return self.decorated.status
         self._successes += 1
+        self._resume_s = self._clock.now_s() + self._delay_s
         return Status.SUCCESS if self._successes >= self._times else Status.RUNNING
 
 
 class Timeout(Gated):
     """Halts the child and fails when it is not done in time."""
 
-    def __init__(self, name: str, child: Behaviour, *, seconds: float, clock: Clock) -> None:
+    def __init__(self, name: str, child: Behaviour, *, seconds: Number, clock: Clock) -> None:
         """Allow a number of seconds on the clock."""
         super().__init__(name, child)
-        self._seconds, self._clock, self._deadline_s = seconds, clock, 0.0
+        self._asked, self._clock = seconds, clock
+        self._seconds, self._deadline_s = 0.0, 0.0
 
     def initialise(self) -> None:
         """Start the clock."""
+        self._seconds = number(self._asked)
         self._deadline_s = self._clock.now_s() + self._seconds
 
     def before(self) -> Status | None:
@@ -133,11 +171,16 @@ class Timeout(Gated):
 class Cooldown(Gated):
     """Fails without starting the child for a while after it has finished."""
 
-    def __init__(self, name: str, child: Behaviour, *, seconds: float, clock: Clock) -> None:
+    def __init__(self, name: str, child: Behaviour, *, seconds: Number, clock: Clock) -> None:
         """Rest for a number of seconds on the clock."""
         super().__init__(name, child)
-        self._seconds, self._clock = seconds, clock
+        self._asked, self._clock = seconds, clock
+        self._seconds = 0.0
         self._ready_s: float | None = None
+
+    def initialise(self) -> None:
+        """Take the number as it is now."""
+        self._seconds = number(self._asked)
 
     def before(self) -> Status | None:
         """Fail while it rests."""
@@ -151,6 +194,32 @@ class Cooldown(Gated):
         if self.decorated.status is not Status.RUNNING:
             self._ready_s = self._clock.now_s() + self._seconds
         return self.decorated.status
+
+
+class WhileRunning(Gated):
+    """Answers for a child that runs, and lets it run on.
+
+    py_trees halts the child with every such answer and starts it again (trap e8). Here it goes
+    on when the next tick reaches it, and is halted by the first tick that does not.
+    """
+
+    def __init__(self, name: str, child: Behaviour, *, says: Status) -> None:
+        """Answer `says` while the child runs."""
+        super().__init__(name, child)
+        self._says = says
+
+    def update(self) -> Status:
+        """Return the answer of the child, or the one for a child that runs."""
+        status: Status = self.decorated.status
+        return self._says if status is Status.RUNNING else status
+
+    def stop(self, new_status: Status) -> None:
+        """End with a status; only a halt reaches the child."""
+        if new_status is Status.INVALID:
+            super().stop(new_status)
+            return
+        self.terminate(new_status)
+        self.status = new_status
 
 
 class ForEach(Gated):
@@ -191,7 +260,7 @@ class ForEach(Gated):
 
 
 class Guard(Gated):
-    """Conditions and assignments around a node: `if`, `unless`, `while`, `on_...`."""
+    """Conditions and assignments around a node: `if`, `unless`, `while`, `on_...`, `finally`."""
 
     def __init__(
         self,
@@ -200,7 +269,7 @@ class Guard(Gated):
         child: Behaviour,
         *,
         conditions: Mapping[str, Expression],
-        assignments: Mapping[Status, Mapping[str, Expression]],
+        assignments: Mapping[str, Mapping[str, Expression]],
         scope: Scope,
     ) -> None:
         """Guard a node.
@@ -210,7 +279,7 @@ class Guard(Gated):
             path: Its path, which is the writer of its assignments.
             child: The node.
             conditions: Expressions by `if`, `unless`, `while`.
-            assignments: Expressions by key, by how the node ends; INVALID when it is halted.
+            assignments: Expressions by key, by `on_start`, `on_success`, ..., `finally`.
             scope: Names of its tree.
         """
         super().__init__(name, child)
@@ -231,7 +300,11 @@ class Guard(Gated):
             self.outcome = None
             return Status.SUCCESS
         self.outcome = None
-        return None if self._holds("while") else Status.FAILURE
+        if not self._holds("while"):
+            return Status.FAILURE
+        if starts:
+            self._assign("on_start")
+        return None
 
     def _holds(self, guard: str) -> bool:
         if guard not in self._conditions:
@@ -243,4 +316,8 @@ class Guard(Gated):
         """Set the keys that belong to how the node ends."""
         halted_idle = new_status is Status.INVALID and self.status is not Status.RUNNING
         if not halted_idle:
-            assign(self._assignments.get(new_status, {}), self._scope, self._path)
+            self._assign(_ENDS[new_status])
+            self._assign("finally")
+
+    def _assign(self, when: str) -> None:
+        assign(self._assignments.get(when, {}), self._scope, self._path)

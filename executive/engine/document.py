@@ -32,6 +32,9 @@ ReasonCode = Annotated[
 Count = Annotated[int, Field(strict=True, ge=1)]
 Seconds = Annotated[float, Field(strict=True, gt=0.0, allow_inf_nan=False)]
 Delay = Annotated[float, Field(strict=True, ge=0.0, allow_inf_nan=False)]
+Formula = Annotated[str, StringConstraints(strict=True, pattern=r"^\$[^$]")]
+"""An expression behind a `$`, worked out when the node starts."""
+Code = Annotated[str, StringConstraints(strict=True, pattern=r"^[a-z][a-z0-9_]*([.][a-z0-9_]+)*$")]
 
 
 def _as_text(value: object) -> object:
@@ -65,6 +68,11 @@ class NodeModel(Model):
 
     name: Name | None = Field(None, description="Name in paths; the kind or skill otherwise.")
     about: Text = Field("", description="One line for people.")
+    checkpoint: Annotated[bool, Field(strict=True)] = Field(
+        False,
+        description="Before it starts nothing is held and nothing moves: a mission that was "
+        "killed may go on from here.",
+    )
     if_: ExpressionText | None = Field(
         None, alias="if", description="Asked once before it starts; when false, the node fails."
     )
@@ -74,9 +82,13 @@ class NodeModel(Model):
     while_: ExpressionText | None = Field(
         None, alias="while", description="Asked every tick; when false, it is halted and fails."
     )
+    on_start: Assignments | None = Field(None, description="Keys to set when it starts.")
     on_success: Assignments | None = Field(None, description="Keys to set when it succeeds.")
     on_failure: Assignments | None = Field(None, description="Keys to set when it fails.")
     on_halt: Assignments | None = Field(None, description="Keys to set when it is halted.")
+    finally_: Assignments | None = Field(
+        None, alias="finally", description="Keys to set however it ends, after the others."
+    )
 
     @property
     def guards(self) -> dict[str, str]:
@@ -86,11 +98,13 @@ class NodeModel(Model):
 
     @property
     def endings(self) -> dict[str, dict[str, str]]:
-        """Assignments when the node ends, by keyword."""
+        """Assignments when the node starts and ends, by keyword."""
         given = {
+            "on_start": self.on_start,
             "on_success": self.on_success,
             "on_failure": self.on_failure,
             "on_halt": self.on_halt,
+            "finally": self.finally_,
         }
         return {keyword: texts for keyword, texts in given.items() if texts}
 
@@ -140,6 +154,56 @@ class SetNode(NodeModel):
     kind = "set"
 
     set: Assignments
+
+
+class UnsetNode(NodeModel):
+    """Take the values of keys away, so that they have none."""
+
+    kind = "unset"
+
+    unset: Name | Annotated[tuple[Name, ...], Field(min_length=1)]
+
+    @property
+    def keys(self) -> tuple[str, ...]:
+        """The keys."""
+        return (self.unset,) if isinstance(self.unset, str) else self.unset
+
+
+class WaitNode(NodeModel):
+    """Run for a while on the cell's clock, then succeed."""
+
+    kind = "wait"
+
+    wait: Delay | Literal["forever"] | Formula = Field(
+        description="Seconds on the cell's clock, an expression, or forever."
+    )
+
+
+class WaitForNode(NodeModel):
+    """Run until an expression is true, then succeed."""
+
+    kind = "wait_for"
+
+    wait_for: ExpressionText
+
+
+class FailNode(NodeModel):
+    """Fail with a reason."""
+
+    kind = "fail"
+
+    fail: Code = Field(description="Code of the reason, such as part.missing.")
+    text: Text = Field("", description="The reason for people.")
+
+
+class ChanceNode(NodeModel):
+    """Succeed with a probability, else fail; the seed of the run decides."""
+
+    kind = "chance"
+
+    chance: Annotated[float, Field(strict=True, ge=0.0, le=1.0)] | Formula = Field(
+        description="Probability of success, 0 to 1."
+    )
 
 
 class _Under:
@@ -219,6 +283,42 @@ class ReactiveSelectorBody(BlockBody):
     memory: Literal[False] = Field(False, description="It begins with the first in every tick.")
 
 
+class IfThenElseBody(BlockBody):
+    """The second child if the first succeeds, else the third; decided once."""
+
+    kind = "if_then_else"
+    children: Annotated[tuple["Node", ...], Field(min_length=2, max_length=3)]
+
+
+class WhileDoElseBody(BlockBody):
+    """The second child while the first succeeds, else the third; asked in every tick."""
+
+    kind = "while_do_else"
+    children: Annotated[tuple["Node", ...], Field(min_length=2, max_length=3)]
+
+
+class CasesBody(NodeModel):
+    """What stands inside a node that picks one of its cases."""
+
+    on: ExpressionText = Field(description="What is compared with the cases.")
+    cases: Annotated[dict[Text, "Node"], Field(min_length=1)] = Field(
+        description="A node for each value, as text."
+    )
+    default: Annotated["Node | None", Field(description="When no case fits; else it fails.")] = None
+
+
+class SwitchBody(CasesBody):
+    """The case that fits a value; picked once."""
+
+    kind = "switch"
+
+
+class ReactiveSwitchBody(CasesBody):
+    """The case that fits a value; picked anew in every tick."""
+
+    kind = "reactive_switch"
+
+
 class ParallelBody(BlockBody):
     """All children in every tick, until enough have succeeded or failed."""
 
@@ -240,29 +340,33 @@ class RetryBody(DecoratorBody):
     """Run the child again when it fails, one attempt a tick at most."""
 
     kind = "retry"
-    times: Count = Field(description="Attempts in all.")
-    delay_s: Delay = Field(0.0, description="Pause after a failure [s].")
+    times: Count | Literal["forever"] | Formula = Field(description="Attempts in all.")
+    delay_s: Delay | Formula = Field(0.0, description="Pause after a failure [s].")
+    backoff: Annotated[float, Field(strict=True, ge=1.0, allow_inf_nan=False)] = Field(
+        1.0, description="Factor by which the pause grows with every failure."
+    )
 
 
 class RepeatBody(DecoratorBody):
     """Run the child again when it succeeds, one round a tick at most."""
 
     kind = "repeat"
-    times: Count = Field(description="Successes that are needed.")
+    times: Count | Literal["forever"] | Formula = Field(description="Successes that are needed.")
+    delay_s: Delay | Formula = Field(0.0, description="Pause after a success [s].")
 
 
 class TimeoutBody(DecoratorBody):
     """Halt the child and fail when it takes too long."""
 
     kind = "timeout"
-    seconds: Seconds = Field(description="On the cell's clock [s].")
+    seconds: Seconds | Formula = Field(description="On the cell's clock [s].")
 
 
 class CooldownBody(DecoratorBody):
     """Fail without starting the child for a while after it has finished."""
 
     kind = "cooldown"
-    seconds: Seconds = Field(description="On the cell's clock [s].")
+    seconds: Seconds | Formula = Field(description="On the cell's clock [s].")
 
 
 class ForEachBody(DecoratorBody):
@@ -277,6 +381,9 @@ class RunOnceBody(DecoratorBody):
     """Run the child until it has finished once, then answer the same."""
 
     kind = "run_once"
+    until: Literal["finished", "success"] = Field(
+        "finished", description="Which answer is kept: any, or only a success."
+    )
 
 
 class InverterBody(DecoratorBody):
@@ -297,15 +404,41 @@ class ForceFailureBody(DecoratorBody):
     kind = "force_failure"
 
 
+class RunningIsSuccessBody(DecoratorBody):
+    """Succeed while the child runs; it goes on in the next tick."""
+
+    kind = "running_is_success"
+
+
+class RunningIsFailureBody(DecoratorBody):
+    """Fail while the child runs; it goes on in the next tick."""
+
+    kind = "running_is_failure"
+
+
+class ObserveBody(DecoratorBody):
+    """Answer what the child answers, and note that in keys."""
+
+    kind = "observe"
+    status: Reference | None = Field(None, description="Key for the child's status.")
+    counts: Reference | None = Field(None, description="Key for how often it did what.")
+
+
 LEAVES: dict[str, type[NodeModel]] = {
-    model.kind: model for model in (SkillNode, SubtreeNode, WhenNode, SetNode)
+    model.kind: model
+    for model in (
+        *(SkillNode, SubtreeNode, WhenNode, SetNode, UnsetNode),
+        *(WaitNode, WaitForNode, FailNode, ChanceNode),
+    )
 }
 BLOCKS: dict[str, type[NodeModel]] = {
     model.kind: model
     for model in (
         *(SequenceBody, ReactiveSequenceBody, SelectorBody, ReactiveSelectorBody, ParallelBody),
+        *(IfThenElseBody, WhileDoElseBody, SwitchBody, ReactiveSwitchBody),
         *(RetryBody, RepeatBody, TimeoutBody, CooldownBody, ForEachBody, RunOnceBody),
         *(InverterBody, ForceSuccessBody, ForceFailureBody),
+        *(RunningIsSuccessBody, RunningIsFailureBody, ObserveBody),
     )
 }
 KINDS = (*LEAVES, *BLOCKS)
@@ -355,6 +488,12 @@ class InPort(OutPort):
         return "default" in self.model_fields_set
 
 
+Kept = Annotated[
+    dict[Name, Any],
+    Field(description="Keys that keep their values when the tree starts anew, with first values."),
+]
+
+
 class TreeDocument(Model):
     """A tree that missions and other trees use as a subtree."""
 
@@ -364,6 +503,7 @@ class TreeDocument(Model):
     uses: tuple[Name, ...] = Field((), description="Stubs that it may run as skills, by name.")
     in_: dict[Name, InPort] = Field(default_factory=dict, alias="in")
     out: dict[Name, OutPort] = Field(default_factory=dict)
+    keep: Kept = Field(default_factory=dict)
     root: Node
 
     @property
@@ -390,6 +530,7 @@ class MissionDocument(Model):
     )
     in_: dict[Name, InPort] = Field(default_factory=dict, alias="in")
     out: dict[Name, OutPort] = Field(default_factory=dict)
+    keep: Kept = Field(default_factory=dict)
     root: Node
 
     @property

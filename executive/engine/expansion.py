@@ -4,11 +4,11 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from executive.engine.document import BLOCKS, NodeModel, SkillNode, SubtreeNode
+from executive.engine.document import BLOCKS, CasesBody, NodeModel, SkillNode, SubtreeNode
 from executive.engine.loader import Program
 from executive.engine.outline import NodeSpec
 
-_ELSEWHERE = {"name", "about", "children", "child", "memory"}
+_ELSEWHERE = {"name", "about", "children", "child", "memory", "cases", "default"}
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -44,8 +44,18 @@ def _expand(program: Program, spec: NodeSpec, name: str, above: tuple[str, ...])
     if isinstance(spec.model, SubtreeNode):
         root = program.subtrees[spec.model.subtree].root
         return _expand(program, root, name, (f"subtree {spec.model.subtree}", *details))
-    children = tuple(_expand(program, child, child.name, ()) for child in spec.children)
+    children = tuple(
+        _expand(program, child, child.name, case)
+        for child, case in zip(spec.children, _cases(spec), strict=True)
+    )
     return ExpandedNode(name, spec.model.kind, details, children)
+
+
+def _cases(spec: NodeSpec) -> Iterator[tuple[str, ...]]:
+    """Yield what each child of a node stands for."""
+    cases = [*spec.model.cases] if isinstance(spec.model, CasesBody) else []
+    for i, _ in enumerate(spec.children):
+        yield (f"case {cases[i]}",) if i < len(cases) else ("default",) if cases else ()
 
 
 def _details(model: NodeModel, name: str) -> Iterator[str]:
@@ -58,6 +68,7 @@ def _details(model: NodeModel, name: str) -> Iterator[str]:
         yield from _parameters(model)
     else:
         yield _shown(getattr(model, model.kind))
+        yield from _parameters(model)
     yield from (f"{keyword} {text}" for keyword, text in model.guards.items())
     yield from (f"{keyword} {_shown(texts)}" for keyword, texts in model.endings.items())
 
@@ -74,7 +85,7 @@ def _wires(direction: str, wired: Mapping[str, object]) -> Iterator[str]:
 
 def _parameters(model: NodeModel) -> Iterator[str]:
     """Yield what a block sets besides what every node has."""
-    own = set(type(model).model_fields) - set(NodeModel.model_fields) - _ELSEWHERE
+    own = set(type(model).model_fields) - {*NodeModel.model_fields, *_ELSEWHERE, model.kind}
     for field, info in type(model).model_fields.items():
         value = getattr(model, field)
         if field in own and (info.is_required() or value != info.default):

@@ -120,6 +120,14 @@ class _Gate(ast.NodeTransformer):
             raise InputError(f"{self._text!r}: field {node.attr!r} is private")
         return self.generic_visit(node)
 
+    def visit_Compare(self, node: ast.Compare) -> ast.AST:
+        for test, value in zip(node.ops, node.comparators, strict=True):
+            if isinstance(test, (ast.Is, ast.IsNot)) and not _is_constant(value):
+                raise InputError(
+                    f"{self._text!r}: 'is' asks for none, true or false; try == for other values"
+                )
+        return self.generic_visit(node)
+
     def visit_Call(self, node: ast.Call) -> ast.expr:
         known = [*FUNCTIONS, WRITTEN]
         name = node.func.id if isinstance(node.func, ast.Name) else ast.unparse(node.func)
@@ -139,6 +147,13 @@ class _Gate(ast.NodeTransformer):
                 node.args = [ast.Constant(name)]
                 return node
         raise InputError(f"{self._text!r}: {WRITTEN}() asks for one name, as in written(trace)")
+
+
+def _is_constant(node: ast.expr) -> bool:
+    """Return whether there is only one value that a part of an expression can be."""
+    if isinstance(node, ast.Constant):
+        return node.value is None or isinstance(node.value, bool)
+    return isinstance(node, ast.Name) and node.id in CONSTANTS
 
 
 def _shown(node: ast.AST) -> str:

@@ -7,22 +7,29 @@ cannot be passed without it.
 """
 
 from collections import Counter
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from executive.engine.document import (
+    CasesBody,
     ForceFailureBody,
     ForceSuccessBody,
     ForEachBody,
+    IfThenElseBody,
     InverterBody,
     ParallelBody,
     ReactiveSelectorBody,
     ReactiveSequenceBody,
+    ReactiveSwitchBody,
     RepeatBody,
     RetryBody,
+    RunningIsFailureBody,
+    RunningIsSuccessBody,
     SelectorBody,
     SequenceBody,
     SetNode,
+    UnsetNode,
+    WhileDoElseBody,
 )
 from executive.engine.outline import NodeSpec
 from executive.engine.wiring import Use, Wiring
@@ -30,8 +37,14 @@ from executive.engine.wiring import Use, Wiring
 Keys = frozenset[str]
 Complain = Callable[[NodeSpec, Use, str], None]
 
-_LOOPS = (RetryBody, RepeatBody, ForEachBody, ReactiveSequenceBody, ReactiveSelectorBody)
-_SKIPPING = (ForEachBody, ForceSuccessBody, InverterBody, ParallelBody)
+_LOOPS = (
+    *(RetryBody, RepeatBody, ForEachBody, ReactiveSequenceBody, ReactiveSelectorBody),
+    *(WhileDoElseBody, ReactiveSwitchBody),
+)
+_LATER = ("on_success", "on_failure", "on_halt", "finally")
+"""Where a node reads keys when it ends."""
+_PASSING = (RunningIsSuccessBody, RunningIsFailureBody)
+_SKIPPING = (ForEachBody, ForceSuccessBody, InverterBody, ParallelBody, CasesBody, *_PASSING)
 """Kinds that may succeed though not everything in them was reached."""
 
 
@@ -89,19 +102,24 @@ class _Flow:
             rounds = rounds.uncertain()
         inside = known | ends if isinstance(node.model, ForEachBody) else known
         success, failure = self._children(node, inside, rounds)
+        if isinstance(node.model, UnsetNode):
+            success -= {*node.model.keys}
         return success | ends.union(gives.key for gives in wiring.gives), failure | ends
 
     def _read(self, wiring: Wiring, known: Keys, rounds: _Rounds) -> Keys:
+        starts = frozenset(gives.key for gives in wiring.ends if gives.at[0] == "on_start")
         for use in wiring.uses:
-            if use.at[0].startswith("on_"):
+            if use.at[0] in _LATER:
                 continue
+            if use.at[0] not in wiring.node.model.guards:
+                known |= starts  # set when the guards have let it pass
             if not use.optional:
                 for key in sorted(use.value.reads):
                     if key not in known and not rounds.must[key]:
                         self._complain(wiring.node, use, key)
             if isinstance(wiring.node.model, SetNode) and use.at[0] == "set":
                 known |= {use.at[1]}  # what is set first can be used next
-        return known
+        return known | starts
 
     def _children(self, node: NodeSpec, known: Keys, rounds: _Rounds) -> tuple[Keys, Keys]:
         model = node.model
@@ -112,6 +130,10 @@ class _Flow:
             return success, failure
         if isinstance(model, ParallelBody):
             return self._parallel(node, known, rounds)
+        if isinstance(model, (IfThenElseBody, WhileDoElseBody)):
+            return self._branches(node, known, rounds)
+        if isinstance(model, CasesBody):
+            return self._either(node.children, known, rounds)
         if not node.children:
             return known, known
         success, failure = self.walk(node.children[0], known, rounds)
@@ -119,6 +141,9 @@ class _Flow:
             return failure, success
         if isinstance(model, (ForceSuccessBody, ForceFailureBody)):
             return success | failure, success | failure
+        if isinstance(model, _PASSING):
+            either = known.union(success, failure, self._counts(node))
+            return either, either
         return success, failure | known
 
     def _sequence(self, node: NodeSpec, known: Keys, rounds: _Rounds) -> tuple[Keys, Keys]:
@@ -135,6 +160,26 @@ class _Flow:
             succeeded, known = self.walk(child, known, rounds.uncertain() if i else rounds)
             success |= succeeded
         return known, success
+
+    def _branches(self, node: NodeSpec, known: Keys, rounds: _Rounds) -> tuple[Keys, Keys]:
+        condition, then, *other = node.children
+        known, unknown = self.walk(condition, known, rounds)
+        success, failure = self.walk(then, known, rounds.uncertain())
+        if not other:
+            return success, failure | unknown
+        succeeded, failed = self.walk(other[0], unknown, rounds.uncertain())
+        return success | succeeded, failure | failed
+
+    def _either(
+        self, children: Sequence[NodeSpec], known: Keys, rounds: _Rounds
+    ) -> tuple[Keys, Keys]:
+        success: Keys = frozenset()
+        failure = known
+        for child in children:
+            succeeded, failed = self.walk(child, known, rounds)
+            success |= succeeded
+            failure |= failed
+        return success, failure
 
     def _parallel(self, node: NodeSpec, known: Keys, rounds: _Rounds) -> tuple[Keys, Keys]:
         counts = [self._counts(child) for child in node.children]

@@ -14,6 +14,7 @@ from executive.engine.document import (
     BLOCKS,
     DOCUMENTS,
     BlockBody,
+    CasesBody,
     DecoratorBody,
     MissionDocument,
     NodeModel,
@@ -102,6 +103,8 @@ def _spec(
         models = model.children
     elif isinstance(model, DecoratorBody):
         models = (model.child,)
+    elif isinstance(model, CasesBody):
+        models = (*model.cases.values(), *((model.default,) if model.default else ()))
     places = _child_places(source.data, at)
     children = tuple(
         _spec(child, place, source, paths) for child, place in zip(models, places, strict=True)
@@ -153,7 +156,15 @@ def _child_places(data: object, at: YamlPath) -> list[YamlPath]:
     places: list[YamlPath] = [(*body_at, "child")] if "child" in body else []
     if isinstance(children, list):
         places += [(*body_at, "children", i) for i in range(len(children))]
-    return places
+    return places + _case_places(body, body_at)
+
+
+def _case_places(body: Mapping[str, object], body_at: YamlPath) -> list[YamlPath]:
+    cases = body.get("cases")
+    if not isinstance(cases, dict):
+        return []
+    places: list[YamlPath] = [(*body_at, "cases", case) for case in cases]
+    return [*places, (*body_at, "default")] if body.get("default") is not None else places
 
 
 def _labels(value: object) -> tuple[str | None, str]:

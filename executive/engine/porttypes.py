@@ -17,6 +17,8 @@ from typing import Any, Literal, Union
 
 from executive.core.errors import InputError
 from executive.core.registry import Registry, closest
+from executive.engine.counts import NodeCounts
+from executive.engine.ticks import NodeStatus
 
 _BUILT_IN: dict[str, Any] = {
     "any": Any,
@@ -24,6 +26,8 @@ _BUILT_IN: dict[str, Any] = {
     "float": float,
     "int": int,
     "str": str,
+    "NodeCounts": NodeCounts,
+    "NodeStatus": NodeStatus,
 }
 _SCALARS = (bool, int, float, str)
 _SEQUENCES = (list, tuple, collections.abc.Sequence)

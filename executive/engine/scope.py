@@ -70,6 +70,10 @@ class Scope:
         """Set a key."""
         self._blackboard.write(self.key(name), value, writer)
 
+    def unset(self, name: str, writer: str) -> None:
+        """Take the value of a key away."""
+        self._blackboard.unset(self.key(name), writer)
+
 
 def evaluate(value: Value, scope: Scope) -> object:
     """Return what a value comes to in a scope.

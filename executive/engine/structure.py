@@ -6,7 +6,14 @@ from collections.abc import Iterator
 from executive.core.errors import Fault
 from executive.core.registry import Registry, closest
 from executive.core.skill import Skill
-from executive.engine.document import BlockBody, ParallelBody, SkillNode
+from executive.engine.document import (
+    BlockBody,
+    CasesBody,
+    ObserveBody,
+    ParallelBody,
+    SkillNode,
+    UnsetNode,
+)
 from executive.engine.outline import NodeSpec, TreeSpec
 
 
@@ -21,10 +28,21 @@ def structural_faults(tree: TreeSpec, skills: Registry[type[Skill]]) -> Iterator
         if isinstance(model, SkillNode) and model.skill not in skills:
             message = f"unknown skill {model.skill!r}; {closest(model.skill, [*skills])}"
             yield node.fault(message, "skill")
-        if isinstance(model, BlockBody):
+        if isinstance(model, UnsetNode):
+            yield from _unset_faults(node, model, tree)
+        if isinstance(model, (BlockBody, CasesBody)):
             yield from _sibling_faults(node)
+        if isinstance(model, ObserveBody) and not (model.status or model.counts):
+            yield node.fault("observe needs a key for status, counts or both")
         if isinstance(model, ParallelBody):
             yield from _policy_faults(node, model)
+
+
+def _unset_faults(node: NodeSpec, model: UnsetNode, tree: TreeSpec) -> Iterator[Fault]:
+    for key in model.keys:
+        if key in tree.inputs:
+            message = f"{key!r} is an input of the tree, which keeps its value; try another key"
+            yield node.fault(message, "unset")
 
 
 def _sibling_faults(node: NodeSpec) -> Iterator[Fault]:

@@ -35,11 +35,15 @@ _EXPECTED: Final[Mapping[str, str]] = {
     "model_type": "a mapping",
     "string_too_short": "some text",
     "string_type": "text",
+    "too_long": "at most {max_length} of them",
     "too_short": "at least {min_length} of them",
     "tuple_type": "a list",
 }
+_NUMBERS: Final = ("a number", "a finite number", "an integer")
 _NAME: Final = "a name of lower-case letters, digits and _"
 _REFERENCE: Final = "a key of the blackboard such as $image"
+_FORMULA: Final = "an expression such as $2 * pause_s"
+_CODE: Final = "a code such as part.missing"
 
 
 def validate(source: Source) -> tuple[Document | None, list[Fault]]:
@@ -78,7 +82,7 @@ def _translate(source: Source, model: type[Document], error: ValidationError) ->
     whole: list[Fault] = []
     for detail in error.errors(include_url=False, include_input=False):
         path, inner = _yaml_path(source.data, detail["loc"])
-        context = detail.get("ctx", {})
+        context = {name: _number(value) for name, value in detail.get("ctx", {}).items()}
         match detail["type"]:
             case "extra_forbidden":
                 known = _known_keys(model, detail["loc"])
@@ -92,9 +96,8 @@ def _translate(source: Source, model: type[Document], error: ValidationError) ->
                 whole.append(_fault(source, path, detail["msg"]))
             case "string_pattern_mismatch":
                 is_key = inner == ("[key]",)
-                expected = _REFERENCE if "$" in str(context["pattern"])[:3] else _NAME
-                said[path, is_key].append(expected)
-            case "too_short" if value_at(source.data, path):
+                said[path, is_key].append(_pattern(str(context["pattern"])))
+            case "too_short" if _has_items(source.data, path, context["min_length"]):
                 continue  # items that are wrong themselves are not counted
             case kind:
                 expected = _EXPECTED.get(kind, detail["msg"]).format(**context)
@@ -103,8 +106,28 @@ def _translate(source: Source, model: type[Document], error: ValidationError) ->
     return whole
 
 
+def _number(value: Any) -> Any:
+    """Write a limit as a file has it: 1000 where pydantic says 1000.0."""
+    return f"{value:g}" if isinstance(value, float) else value
+
+
+def _pattern(pattern: str) -> str:
+    """Say what a pattern asks for."""
+    if pattern.endswith("[^$]"):
+        return _FORMULA
+    return _REFERENCE if "$" in pattern[:3] else _CODE if "[.]" in pattern else _NAME
+
+
+def _has_items(data: object, path: YamlPath, count: int) -> bool:
+    value = value_at(data, path)
+    items = value.get("children") if isinstance(value, dict) else value
+    return isinstance(items, (list, dict)) and len(items) >= count
+
+
 def _misfit(source: Source, path: YamlPath, is_key: bool, expected: list[str]) -> Fault:
     value = path[-1] if is_key else value_at(source.data, path)
+    if isinstance(value, (int, float)):  # what a text might be instead is no help then
+        expected = [one for one in expected if one in _NUMBERS or one[-1].isdigit()] or expected
     wanted = ", or ".join(dict.fromkeys(expected)).replace("True", "true").replace("False", "false")
     name = f"{path[-1]}: " if path and not is_key else ""
     return _fault(source, path, f"{name}expected {wanted}; got {_shown(value)}", at_key=is_key)
@@ -166,7 +189,9 @@ def _before_node(location: tuple[int | str, ...], i: int) -> bool:
     """Return whether the step at `i` leads to a node, so that the next one is its kind."""
     if location[i] == "root":
         return i == 0
-    if location[i] == "child":
+    if location[i - 1] == "cases":
+        return i > 1 and location[i - 2] in BLOCKS
+    if location[i] in ("child", "default"):
         return location[i - 1] in BLOCKS
     return isinstance(location[i], int) and location[i - 1] == "children"
 

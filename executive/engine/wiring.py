@@ -7,18 +7,26 @@ from typing import Any
 from executive.core.errors import Fault, InputError
 from executive.core.registry import closest
 from executive.core.skill import Port
+from executive.engine.amounts import FOREVER, Limits, amounts_of
+from executive.engine.counts import NodeCounts
 from executive.engine.document import (
+    CasesBody,
     ForEachBody,
     NodeModel,
+    ObserveBody,
     SetNode,
     SkillNode,
     SubtreeNode,
+    UnsetNode,
+    WaitForNode,
     WhenNode,
 )
+from executive.engine.evaluation import WRITTEN
 from executive.engine.expression import Expression, parse_expression
 from executive.engine.nodeports import PortTable
 from executive.engine.outline import NodeSpec
 from executive.engine.porttypes import fit
+from executive.engine.ticks import NodeStatus
 from executive.engine.values import Literal, Value, key_of, parse_value
 
 
@@ -33,6 +41,7 @@ class Use:
         name: What a message calls the place.
         is_condition: Whether it must be true or false.
         optional: Whether the key may be without a value, because the input has a default.
+        cases: What the value is compared with, by a `switch`.
     """
 
     value: Expression
@@ -41,6 +50,7 @@ class Use:
     name: str
     is_condition: bool = False
     optional: bool = False
+    cases: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -105,10 +115,20 @@ class _Wirer:
                 self._leaf(model, ports)
             case WhenNode(when=text):
                 self._condition("when", text)
+            case WaitForNode(wait_for=text):
+                self._condition("wait_for", text)
+            case UnsetNode():
+                self._unset(model)
+            case CasesBody():
+                self._cases(model)
+            case ObserveBody():
+                self._observe(model)
             case SetNode(set=assignments):
                 self._gives += self._assignments("set", assignments)
             case ForEachBody():
                 self._for_each(model)
+        for key, raw, limits in amounts_of(model):
+            self._amount(key, raw, limits)
         for key, assignments in model.endings.items():
             self._ends += self._assignments(key, assignments)
         return Wiring(self._node, tuple(self._uses), tuple(self._gives), tuple(self._ends))
@@ -133,6 +153,36 @@ class _Wirer:
             if expression is not None:
                 self._uses.append(Use(expression, (kind, key), None, f"{kind}/{key}"))
                 yield Gives(key, (kind, key), value=expression)
+
+    def _amount(self, key: str, raw: object, limits: Limits) -> None:
+        value = self._value(raw, key) if isinstance(raw, str) and raw != FOREVER else None
+        if not isinstance(value, Expression):
+            return
+        if value.reads or value.asks:
+            port = Port(limits.type, unit=limits.unit)
+            self._uses.append(Use(value, (key,), port, key))
+            return
+        try:
+            limits.check(value.evaluate({}))
+        except InputError as error:
+            self._complain(f"{key}: {error}", key)
+
+    def _unset(self, model: UnsetNode) -> None:
+        for key in model.keys:
+            asked = parse_expression(f"{WRITTEN}({key})")
+            self._uses.append(Use(asked, ("unset",), None, "unset"))
+
+    def _cases(self, model: CasesBody) -> None:
+        if expression := self._expression(model.on, "on"):
+            cases = tuple(model.cases)
+            self._uses.append(Use(expression, ("on",), None, "on", cases=cases))
+
+    def _observe(self, model: ObserveBody) -> None:
+        kinds = {"status": (model.status, NodeStatus), "counts": (model.counts, NodeCounts)}
+        for field, (reference, kind) in kinds.items():
+            if reference is not None:
+                key = reference.removeprefix("$")
+                self._ends.append(Gives(key, (field,), port=Port(kind)))
 
     def _for_each(self, model: ForEachBody) -> None:
         value = self._value(model.in_, "in")

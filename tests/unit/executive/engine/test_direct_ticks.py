@@ -140,7 +140,7 @@ DECORATORS = {
     "force": lambda name, child, _: FailureIsSuccess(name, child),
     "once": lambda name, child, _: OneShot(name, child, OneShotPolicy.ON_COMPLETION),
     "retry": lambda name, child, w: Retry(name, child, times=2, delay_s=0.1, clock=w.clock),
-    "repeat": lambda name, child, _: Repeat(name, child, times=2),
+    "repeat": lambda name, child, w: Repeat(name, child, times=2, clock=w.clock),
     "timeout": lambda name, child, w: Timeout(name, child, seconds=0.3, clock=w.clock),
     "cooldown": lambda name, child, w: Cooldown(name, child, seconds=0.2, clock=w.clock),
     "noting": lambda name, child, w: Noting(name, child, w.journal),

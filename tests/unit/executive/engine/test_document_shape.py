@@ -53,7 +53,10 @@ def test_faults_of_a_document(text, message):
             "{reactive_sequence: {memory: true, children: [{when: true}]}}",
             "expected false; got true",
         ),
-        ("{retry: {times: three, child: {when: true}}}", "times: expected an integer; got 'three'"),
+        (
+            "{retry: {times: three, child: {when: true}}}",
+            "times: expected an integer, or 'forever', or an",
+        ),
         ("{retry: {times: 0, child: {when: true}}}", "times: expected at least 1; got 0"),
         ("{retry: {child: {when: true}}}", "t: missing key 'times'"),
         ("{retry: {times: 2, child: {whn: true}}}", "t/?: unknown kind of node 'whn'"),
@@ -80,15 +83,11 @@ def test_faults_of_all_nodes_come_in_one_pass_with_their_places():
         "    - retry: {times: x, child: {skil: c}}\n"
         "    - {skill: d, out: {y: z}}\n"
     )
-    assert sorted(faults_of(text)) == [
-        "t.yaml:5:18: t/a: unknown key 'nmae'; did you mean 'name'? "
-        "(known: about, budget_s, if, in, name, on_failure, on_halt, on_success, out, skill, "
-        "unless, while)",
-        "t.yaml:6:22: t/retry: times: expected an integer; got 'x'",
-        "t.yaml:6:32: t/retry/?: unknown kind of node 'skil'; did you mean 'skill'? (known: "
-        "cooldown, for_each, force_failure, force_success, inverter, parallel, "
-        "reactive_selector, reactive_sequence, repeat, retry, run_once, selector, sequence, "
-        "set, skill, subtree, timeout, when)",
+    assert [fault.partition(" (known")[0] for fault in sorted(faults_of(text))] == [
+        "t.yaml:5:18: t/a: unknown key 'nmae'; did you mean 'name'?",
+        "t.yaml:6:22: t/retry: times: expected an integer, or 'forever', "
+        "or an expression such as $2 * pause_s; got 'x'",
+        "t.yaml:6:32: t/retry/?: unknown kind of node 'skil'; did you mean 'skill'?",
         "t.yaml:7:27: t/d: y: expected a key of the blackboard such as $image; got 'z'",
     ]
 
