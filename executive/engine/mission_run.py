@@ -14,6 +14,9 @@ from pydantic_core import to_jsonable_python
 
 from executive.core.world import Cell
 from executive.engine.builder import BuiltTree, NodeInfo
+from executive.engine.checkpoints.messages import CHECKPOINTS_TOPIC
+from executive.engine.checkpoints.past import Resumption
+from executive.engine.checkpoints.taking import CheckpointRecorder
 from executive.engine.control import RunControl
 from executive.engine.loader import Mission
 from executive.engine.recording.actions import ActionLog
@@ -50,6 +53,7 @@ class RunPlan:
         scenario: What is set up in the cell.
         timeout_s: Longest duration on the cell's clock [s]; None for no limit.
         recording: Where the recording goes.
+        resumption: The checkpoint that it goes on from; None where it begins.
     """
 
     mission: Mission
@@ -58,6 +62,7 @@ class RunPlan:
     scenario: Mapping[str, object]
     timeout_s: float | None
     recording: Path
+    resumption: Resumption | None = None
 
 
 def run_mission(
@@ -84,6 +89,8 @@ def run_mission(
     header = mission_header(plan, tree.nodes)
     with RecordingWriter(plan.recording, header) as writer:
         actions, slow = ActionLog(header.nodes), SlowLog(header.nodes)
+        if plan.resumption is not None:
+            _repeat(plan.resumption, writer, (actions, slow))
         runner = Runner(
             tree,
             cell,
@@ -91,7 +98,9 @@ def run_mission(
             timeout_s=plan.timeout_s,
             observers=(writer, actions, slow, *observers),
             control=control,
+            past=plan.resumption.past if plan.resumption else None,
         )
+        CheckpointRecorder(tree, cell, runner, writer, first=_next_checkpoint(plan.resumption))
         result = runner.run()
         raised = [one_line(error) for error in result.survived]
         report = RunReport(
@@ -112,6 +121,21 @@ def run_mission(
         )
         writer.write_result(message)
     return message
+
+
+def _repeat(
+    resumption: Resumption, writer: RecordingWriter, observers: Sequence[RunObserver]
+) -> None:
+    """Take over what an earlier run has recorded up to the checkpoint."""
+    origin = resumption.origin
+    writer.carry_over(resumption.earlier, CHECKPOINTS_TOPIC, origin.checkpoint)
+    for number in range(origin.tick):
+        for observer in observers:
+            observer.on_tick(resumption.earlier.tick(number))
+
+
+def _next_checkpoint(resumption: Resumption | None) -> int:
+    return 0 if resumption is None else resumption.origin.checkpoint + 1
 
 
 def _asked(what: str, ask: Callable[[], object], raised: list[str]) -> JsonValue:
@@ -143,6 +167,7 @@ def mission_header(plan: RunPlan, nodes: Sequence[NodeInfo]) -> MissionHeader:
         nodes=recorded_nodes(nodes),
         versions=versions(),
         started_utc=datetime.now(UTC).isoformat(timespec="seconds"),
+        resumed_from=plan.resumption.origin if plan.resumption else None,
     )
 
 

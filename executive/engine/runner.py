@@ -16,7 +16,11 @@ from executive.core.errors import DeviceError, NodeError
 from executive.core.world import Cell, StreamMessage
 from executive.engine.builder import BuiltTree, NodeInfo
 from executive.engine.causes import Cause, deciding_leaves
+from executive.engine.checkpoints.messages import Progress
+from executive.engine.checkpoints.past import Moment, Past
 from executive.engine.control import EmergencyStopped, RunControl
+from executive.engine.debugging.debugger import Debugger
+from executive.engine.interception import Interceptor, chained
 from executive.engine.pausing import Pauses
 from executive.engine.probe import TreeProbe, fault_of
 from executive.engine.rate import Rate, RateReport
@@ -97,6 +101,9 @@ class Runner:
         timeout_s: float | None = None,
         observers: Sequence[RunObserver] = (),
         control: RunControl | None = None,
+        debugger: Debugger | None = None,
+        interceptors: Sequence[Interceptor] = (),
+        past: Past | None = None,
     ) -> None:
         """Prepare a run; nothing moves yet.
 
@@ -107,14 +114,27 @@ class Runner:
             timeout_s: Longest duration on the cell's clock [s], pauses not counted.
             observers: Told of every tick; one that raises ends the run.
             control: How to pause and stop it.
+            debugger: Who may pause it anywhere and answer for nodes; made with that control.
+            interceptors: What stands between nodes and their parents besides.
+            past: What was before, when it goes on from a checkpoint.
         """
         self._tree, self._cell, self._clock = tree, cell, cell.clock
         self._timeout_s = timeout_s
         self._observers = tuple(observers)
         self.control = control or RunControl()
-        self._probe = TreeProbe(tree)
-        self._start_s = self._clock.now_s()
-        self._rate = Rate(tick_hz, self._start_s)
+        self._debugger = debugger
+        if debugger is not None:
+            debugger.waits_with(self._wait_in_tick)
+            self._observers = (*self._observers, debugger)
+            interceptors = (debugger.intercept, *interceptors)
+        self._probe = TreeProbe(tree, chained(tuple(interceptors)))
+        now_s = self._clock.now_s()
+        begun = Progress(tick=0, time_s=now_s, start_s=now_s, grid_s=now_s)
+        if past is not None:
+            begun = past.progress
+            self._probe.go_on(past)
+        self._start_s, self._number = begun.start_s, begun.tick
+        self._rate = Rate(tick_hz, begun.grid_s, now_s=now_s, paused_s=begun.paused_s)
         self._pauses = Pauses(
             tree,
             self._clock,
@@ -123,9 +143,21 @@ class Runner:
             tell=self._tell_streams,
             error_of=self._error_of,
         )
-        self._number = 0
         self._told: NodeError | None = None
         self._survived: list[NodeError] = []
+
+    @property
+    def moment(self) -> Moment:
+        """How far the run has come, in the middle of a tick too."""
+        events, outcomes = self._probe.so_far()
+        progress = Progress(
+            tick=self._number,
+            time_s=self._clock.now_s(),
+            start_s=self._start_s,
+            grid_s=self._rate.origin_s,
+            paused_s=self._rate.paused_s,
+        )
+        return Moment(progress, events, outcomes)
 
     def run(self) -> RunResult:
         """Tick until the mission ends, whatever ends it; then stop everything.
@@ -169,6 +201,8 @@ class Runner:
 
     def _tick_until_the_end(self) -> _Ending:
         while True:
+            if self._debugger is not None:
+                self._debugger.before_tick(self._number)
             ending = self._paused() or self._interrupted() or self._tick()
             if ending is not None:
                 return ending
@@ -180,6 +214,13 @@ class Runner:
         paused_s, errors = self._pauses.wait()
         self._rate.skip(paused_s)
         return _broken(*errors) if errors else None
+
+    def _wait_in_tick(self) -> None:
+        """Wait in the middle of a tick for as long as the run is paused."""
+        paused_s, errors = self._pauses.wait()
+        self._rate.skip(paused_s)
+        if errors:
+            raise errors[0]
 
     def _tick(self) -> _Ending | None:
         now_s = self._clock.now_s()
@@ -276,6 +317,8 @@ class Runner:
         self._tell_streams()
 
     def _tell_streams(self, more: Sequence[StreamMessage] = ()) -> None:
+        if self._debugger is not None:
+            more = (*more, *self._debugger.drain_notes(self._clock.now_s()))
         messages = (*self._cell.drain_streams(), *more)
         for observer in self._observers:
             observer.on_streams(messages)
