@@ -73,6 +73,9 @@ class Gated(Decorator):
 class Retry(Gated):
     """Runs the child again when it fails; at most one attempt in a tick."""
 
+    MEMORY = ("_failures", "_times", "_delay_s")
+    TIMES = ("_resume_s",)
+
     def __init__(
         self,
         name: str,
@@ -120,6 +123,9 @@ class Retry(Gated):
 class Repeat(Gated):
     """Runs the child again when it succeeds; at most one round in a tick."""
 
+    MEMORY = ("_successes", "_times", "_delay_s")
+    TIMES = ("_resume_s",)
+
     def __init__(
         self, name: str, child: Behaviour, *, times: Number, delay_s: Number = 0.0, clock: Clock
     ) -> None:
@@ -150,6 +156,9 @@ class Repeat(Gated):
 class Timeout(Gated):
     """Halts the child and fails when it is not done in time."""
 
+    MEMORY = ("_seconds",)
+    TIMES = ("_deadline_s",)
+
     def __init__(self, name: str, child: Behaviour, *, seconds: Number, clock: Clock) -> None:
         """Allow a number of seconds on the clock."""
         super().__init__(name, child)
@@ -170,6 +179,9 @@ class Timeout(Gated):
 
 class Cooldown(Gated):
     """Fails without starting the child for a while after it has finished."""
+
+    MEMORY = ("_seconds",)
+    TIMES = ("_ready_s",)
 
     def __init__(self, name: str, child: Behaviour, *, seconds: Number, clock: Clock) -> None:
         """Rest for a number of seconds on the clock."""
@@ -225,6 +237,8 @@ class WhileRunning(Gated):
 class ForEach(Gated):
     """Runs the child once for each item of a list, one item in a tick at most."""
 
+    MEMORY = ("_left",)
+
     def __init__(
         self, name: str, path: str, child: Behaviour, *, item: str, items: Value, scope: Scope
     ) -> None:
@@ -261,6 +275,8 @@ class ForEach(Gated):
 
 class Guard(Gated):
     """Conditions and assignments around a node: `if`, `unless`, `while`, `on_...`, `finally`."""
+
+    MEMORY = ("_starts",)
 
     def __init__(
         self,

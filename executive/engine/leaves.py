@@ -40,6 +40,8 @@ class Wait(Leaf):
 class WaitFor(Leaf):
     """Runs until an expression is true, then succeeds."""
 
+    MEMORY = ()
+
     def __init__(
         self, name: str, path: str, expression: Expression, scope: Scope, supervision: Supervision
     ) -> None:

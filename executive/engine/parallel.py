@@ -21,6 +21,7 @@ class Parallel(Composite):
         status: Answer of the last tick.
     """
 
+    MEMORY = ("_verdict",)
     status: Status
 
     def __init__(
