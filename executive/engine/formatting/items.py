@@ -49,6 +49,7 @@ class Entry:
         line: Line in which it begins, from 0.
         column: Column in which it begins, from 0.
         parent: Entry that it stands in.
+        in_flow: Whether it stands between braces or brackets.
         above: Comments and blank lines before it.
         beside: Comment at the end of its first line.
         after: Comments and blank lines after all of it.
@@ -59,6 +60,7 @@ class Entry:
     line: int
     column: int
     parent: "Entry | None"
+    in_flow: bool = False
     above: list[str] = field(default_factory=list)
     beside: str = ""
     after: list[str] = field(default_factory=list)
@@ -110,7 +112,7 @@ def _value(node: Any, parent: Entry | None, entries: list[Entry]) -> Scalar | Co
         if collection.is_list and not node.flow_style:
             column = node.start_mark.column  # that of the dash
         said = key.value if key is not None else None
-        entry = Entry(said, Scalar("", False), mark.line, column, parent)
+        entry = Entry(said, Scalar("", False), mark.line, column, parent, bool(node.flow_style))
         entries.append(entry)
         entry.value = _value(value, entry, entries)
         collection.entries.append(entry)
@@ -154,7 +156,8 @@ def _is_blank(lines: list[str], number: int) -> bool:
 
 def _attach_beside(before: list[Entry], comment: Comment) -> None:
     here = [one for one in before if one.line == comment.line]
-    entry = here[0] if here else before[-1]
+    in_block = [one for one in here if not one.in_flow]
+    entry = in_block[-1] if in_block else here[0] if here else before[-1]
     if entry.beside:
         entry.above.append(comment.text)
     else:

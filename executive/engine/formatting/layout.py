@@ -25,11 +25,25 @@ class Layout:
         for position, (index, entry) in enumerate(self._ordered(collection, path)):
             step = index if collection.is_list else entry.key
             assert step is not None
+            if entry.key is None:
+                self._lift_first(entry, (*path, step))
             above = _without_leading_blank(entry.above) if position == 0 else entry.above
             written += _comment_lines(above, indent)
             written += self._entry(entry, (*path, step), indent)
             written += _comment_lines(entry.after, indent)
         return written
+
+    def _lift_first(self, entry: Entry, path: YamlPath) -> None:
+        """Put what stands above the first key of an item above the item: there is no line between."""
+        if isinstance(entry.value, Collection) and entry.value.entries:
+            index, first = self._ordered(entry.value, path)[0]
+            if first.key is None:
+                self._lift_first(first, (*path, index))
+            entry.above += first.above
+            first.above = []
+            if first.beside and entry.beside:
+                entry.above.append(entry.beside)
+                entry.beside = ""
 
     def _ordered(self, collection: Collection, path: YamlPath) -> Sequence[tuple[int, Entry]]:
         known = () if collection.is_list else self._places.known_order(path)
@@ -52,10 +66,9 @@ class Layout:
         self, entry: Entry, value: Collection, path: YamlPath, lead: str, indent: int
     ) -> list[str]:
         below = self.lines(value, path, indent + _STEP)
-        first = below[0].lstrip()
-        if entry.key is not None or first.startswith("#") or entry.beside:
+        if entry.key is not None:
             return [_with(lead, entry.beside), *below]
-        return [f"{lead} {first}", *below[1:]]
+        return [_with(f"{lead} {below[0].lstrip()}", entry.beside), *below[1:]]
 
     def _scalar(self, entry: Entry, scalar: Scalar, lead: str, indent: int) -> list[str]:
         line = f"{lead} {line_text(scalar)}"

@@ -68,7 +68,7 @@ def _sound(lines: list[str], text: str) -> list[str] | None:
 @lru_cache(maxsize=4096)
 def _is_plain(text: str, form: str, *, key: bool = False) -> bool:
     """Return whether a text without quotes is read as itself; the parser is asked."""
-    if not text or text != text.strip() or "\n" in text:
+    if not text.strip() or text != text.strip() or not text.isprintable():
         return False
     return (_keys if key else _values)(form.format(text))[:1] == [text]
 
