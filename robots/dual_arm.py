@@ -107,6 +107,19 @@ class PlannedDualArm:
         """Return whether something is between the fingers."""
         return self._driver.holds(arm)
 
+    def hold(self) -> None:
+        """Bring a motion to rest on its own path, to be taken up again by `go_on`."""
+        self._driver.hold()
+
+    def go_on(self) -> None:
+        """Take up a motion that was held."""
+        self._driver.go_on()
+
+    def resting(self) -> bool:
+        """Return whether nothing moves: no motion is under way, or it is held."""
+        fingers = any(self._driver.gripping(arm) for arm in ARMS)
+        return not fingers and (self._driver.held() or not self._driver.state().moving)
+
     def stop(self) -> None:
         """Bring both arms to rest within their jerk limits."""
         self._driver.stop()

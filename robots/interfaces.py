@@ -82,7 +82,7 @@ class ArmsState:
         velocities_rad_s: Joint velocities, shape (14,).
         accelerations_rad_s2: Commanded joint accelerations, shape (14,).
         openings_m: Distance between the fingers of each gripper [m].
-        moving: Whether a trajectory or a stop is being executed.
+        moving: Whether a trajectory or a stop is being executed; also while it is held.
         stamp_s: On the cell's clock [s].
     """
 
@@ -122,12 +122,30 @@ class ArmsDriver(Protocol):
         """Return whether something is between the closed fingers (they are not shut)."""
         ...
 
+    def hold(self) -> None:
+        """Bring a trajectory to rest on its own path within all limits, to be taken up again.
+
+        Nothing happens while none is executed; a stop goes on.
+        """
+        ...
+
+    def go_on(self) -> None:
+        """Take up a trajectory that was held, within all limits."""
+        ...
+
+    def held(self) -> bool:
+        """Return whether a trajectory rests on its path."""
+        ...
+
     def stop(self) -> None:
-        """Bring all joints to rest within their jerk limits; grippers keep what they hold."""
+        """Bring all joints to rest within their jerk limits; grippers keep what they hold.
+
+        What was executed or held is given up.
+        """
         ...
 
     def emergency_stop(self) -> None:
-        """Stop as fast as the brakes allow."""
+        """Stop as fast as the brakes allow, and take no more commands; from any thread."""
         ...
 
 
@@ -186,6 +204,18 @@ class DualArm(Protocol):
         """Return whether something is between the fingers."""
         ...
 
+    def hold(self) -> None:
+        """Bring a motion to rest on its own path, to be taken up again by `go_on`."""
+        ...
+
+    def go_on(self) -> None:
+        """Take up a motion that was held."""
+        ...
+
+    def resting(self) -> bool:
+        """Return whether nothing moves: no motion is under way, or it is held."""
+        ...
+
     def stop(self) -> None:
-        """Bring both arms to rest within their jerk limits."""
+        """Bring both arms to rest within their jerk limits; a held motion is given up."""
         ...

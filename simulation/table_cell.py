@@ -1,5 +1,6 @@
 """The simulated table cell: a YuMi, a table, an overhead camera and one cable."""
 
+import threading
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
@@ -59,6 +60,10 @@ class TableCell:
             self._world, settings.camera, np.random.default_rng(camera_seed)
         )
         self.clock = SimClock(self)
+        # One thread at a time lets the world go on; who makes an emergency stop goes first.
+        self._stepping = threading.RLock()
+        self._may_step = threading.Event()
+        self._may_step.set()
         self.devices: Mapping[str, object] = {
             "clock": self.clock,
             "camera": self.camera,
@@ -84,12 +89,14 @@ class TableCell:
         """Let time pass and record it; what `clock.sleep_until` does."""
         end = self.steps + steps
         while self.steps < end:
-            self._world.advance(min(end - self.steps, self._steps_a_record))
-            self._record()
+            self._may_step.wait()
+            with self._stepping:
+                self._step(end)
 
     def drain_streams(self) -> Iterable[StreamMessage]:
         """Return joint states and scenes since the last call, in the order of time."""
-        messages = [*self._joint_states.drain(), *self._scene.drain()]
+        with self._stepping:
+            messages = [*self._joint_states.drain(), *self._scene.drain()]
         return sorted(messages, key=lambda message: message.time_s)
 
     def stop(self) -> None:
@@ -98,9 +105,19 @@ class TableCell:
         self._come_to_rest()
 
     def emergency_stop(self) -> None:
-        """Bring the arms to rest as fast as the brakes allow; grippers keep what they hold."""
-        self.driver.emergency_stop()
-        self._come_to_rest()
+        """Bring the arms to rest as fast as the brakes allow; grippers keep what they hold.
+
+        Safe from any thread, whatever another one does meanwhile: this one takes the world on
+        until the arms rest. They take no command after that.
+        """
+        self._may_step.clear()
+        try:
+            with self._stepping:
+                self.driver.emergency_stop()
+                while not self.driver.at_rest:
+                    self._step(self.steps + 1)
+        finally:
+            self._may_step.set()
 
     def close(self) -> None:
         """Shut the physics server."""
@@ -134,6 +151,10 @@ class TableCell:
     def _come_to_rest(self) -> None:
         while not self.driver.at_rest:
             self.advance(1)
+
+    def _step(self, end: int) -> None:
+        self._world.advance(min(end - self.steps, self._steps_a_record))
+        self._record()
 
     def _record(self) -> None:
         now_s, world = self._world.now_s(), self._world

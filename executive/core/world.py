@@ -47,7 +47,12 @@ class Cell(Protocol):
         ...
 
     def emergency_stop(self) -> None:
-        """Stop every moving thing as fast as its brakes allow; safe to call at any time."""
+        """Stop every moving thing as fast as its brakes allow, for good.
+
+        Safe to call at any time and from any thread, also while another one is inside the cell
+        or one of its devices: an emergency waits for no tick. Nothing moves after it returns,
+        whatever skills still ask for.
+        """
         ...
 
     def close(self) -> None:

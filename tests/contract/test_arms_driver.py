@@ -148,6 +148,132 @@ def test_brakes_may_take_over_from_a_stop_but_not_the_other_way_round(rig, drive
     assert len(until_rest(rig)) * STEP_S < 0.15
 
 
+def derivatives(states):
+    """Return commanded velocities, accelerations and jerks over the steps between states."""
+    accelerations = np.array([state.accelerations_rad_s2 for state in states])
+    velocities = np.array([state.velocities_rad_s for state in states])
+    return velocities, accelerations, np.diff(accelerations, axis=0) / STEP_S
+
+
+def until_held(rig):
+    """Hold the motion and step until it rests; return the states on the way."""
+    rig.driver.hold()
+    states = [rig.driver.state()]
+    while not rig.driver.held():
+        rig.step()
+        states.append(rig.driver.state())
+        assert len(states) < 2000
+    return states
+
+
+def long_way():
+    """Return a motion that takes seconds, so that there is time to hold it."""
+    return rest_to_rest(HOME_RAD, AWAY_RAD, LIMITS.slowed(0.4))
+
+
+def on_a_long_way(rig, time_s):
+    rig.driver.execute(long_way())
+    for _ in range(round(time_s / STEP_S)):
+        rig.step()
+
+
+@pytest.mark.parametrize("time_s", [0.1, 0.5, 0.8])
+def test_a_held_motion_rests_on_its_path_within_all_limits_and_is_taken_up_again(rig, time_s):
+    on_a_long_way(rig, time_s)
+    slowing = until_held(rig)
+    assert slowing[-1].moving
+    assert np.abs(slowing[-1].velocities_rad_s).max() < 1e-3
+    for _ in range(50):
+        rig.step()
+    assert rig.driver.state().positions_rad == pytest.approx(slowing[-1].positions_rad, abs=1e-5)
+    rig.driver.go_on()
+    assert not rig.driver.held()
+    states = [*slowing, *until_rest(rig)]
+    velocities, accelerations, jerks = derivatives(states)
+    assert (np.abs(velocities) <= LIMITS.velocity * 1.01).all()
+    assert (np.abs(accelerations) <= LIMITS.acceleration * 1.001).all()
+    assert (np.abs(jerks[:-1]) <= LIMITS.jerk * 1.001).all()
+    direction = (AWAY_RAD - HOME_RAD) / np.linalg.norm(AWAY_RAD - HOME_RAD)
+    for state in states:
+        gone = state.positions_rad - HOME_RAD
+        assert np.linalg.norm(gone - (gone @ direction) * direction) < 10 * TRACKING_RAD
+    assert states[-1].positions_rad == pytest.approx(AWAY_RAD, abs=TRACKING_RAD)
+
+
+def test_a_motion_may_be_held_again_while_it_is_taken_up(rig, driver):
+    on_a_long_way(rig, 0.3)
+    until_held(rig)
+    driver.go_on()
+    rig.step()
+    where_rad = until_held(rig)[-1].positions_rad
+    assert np.linalg.norm(where_rad - HOME_RAD) < np.linalg.norm(AWAY_RAD - HOME_RAD)
+    driver.go_on()
+    assert until_rest(rig)[-1].positions_rad == pytest.approx(AWAY_RAD, abs=TRACKING_RAD)
+
+
+def test_a_held_motion_that_goes_on_at_once_still_arrives(rig, driver):
+    on_a_long_way(rig, 0.3)
+    driver.hold()
+    rig.step()
+    driver.go_on()
+    states = until_rest(rig)
+    assert (np.abs(derivatives(states)[2][:-1]) <= LIMITS.jerk * 1.001).all()
+    assert states[-1].positions_rad == pytest.approx(AWAY_RAD, abs=TRACKING_RAD)
+
+
+def test_a_stop_gives_a_held_motion_up(rig, driver):
+    on_a_long_way(rig, 0.3)
+    where_rad = until_held(rig)[-1].positions_rad
+    driver.stop()
+    until_rest(rig)
+    driver.go_on()
+    rig.step()
+    assert driver.state().positions_rad == pytest.approx(where_rad, abs=TRACKING_RAD)
+    driver.execute(rest_to_rest(driver.state().positions_rad, HOME_RAD, LIMITS))
+    assert until_rest(rig)[-1].positions_rad == pytest.approx(HOME_RAD, abs=TRACKING_RAD)
+
+
+def test_a_stop_while_a_motion_slows_down_keeps_the_limits(rig, driver):
+    on_a_long_way(rig, 0.5)
+    driver.hold()
+    for _ in range(20):
+        rig.step()
+    driver.stop()
+    _, accelerations, jerks = derivatives(until_rest(rig))
+    assert (np.abs(accelerations) <= LIMITS.acceleration * 1.001).all()
+    assert (np.abs(jerks[:-1]) <= LIMITS.jerk * 1.001).all()
+
+
+def test_a_motion_that_is_nearly_over_ends_instead_of_being_held(rig, driver):
+    on_a_long_way(rig, long_way().duration_s - 0.03)
+    driver.hold()
+    assert until_rest(rig)[-1].positions_rad == pytest.approx(AWAY_RAD, abs=TRACKING_RAD)
+    driver.go_on()
+    driver.execute(rest_to_rest(driver.state().positions_rad, HOME_RAD, LIMITS))
+    assert until_rest(rig)[-1].positions_rad == pytest.approx(HOME_RAD, abs=TRACKING_RAD)
+
+
+def test_holding_what_rests_does_nothing(rig, driver):
+    driver.hold()
+    assert not driver.held()
+    driver.execute(rest_to_rest(HOME_RAD, AWAY_RAD, LIMITS))
+    assert until_rest(rig)[-1].positions_rad == pytest.approx(AWAY_RAD, abs=TRACKING_RAD)
+
+
+def test_nothing_moves_after_an_emergency_stop(rig, driver):
+    in_motion(rig)
+    driver.emergency_stop()
+    until_rest(rig)
+    here_rad = driver.state().positions_rad
+    with pytest.raises(DeviceError, match="an emergency stop was made"):
+        driver.execute(rest_to_rest(here_rad, HOME_RAD, LIMITS))
+    with pytest.raises(DeviceError, match="an emergency stop was made"):
+        driver.grip("left", "pinch")
+    driver.go_on()
+    rig.step()
+    assert driver.state().positions_rad == pytest.approx(here_rad, abs=1e-5)
+
+
 def test_moves_again_after_a_stop(rig, driver):
     in_motion(rig)
     driver.stop()
