@@ -3,8 +3,9 @@
 import base64
 import json
 import struct
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import BinaryIO
 
@@ -32,6 +33,7 @@ from executive.engine.recording.messages import (
     ResultMessage,
     TickMessage,
 )
+from executive.engine.recording.parts import parts_of
 from executive.engine.ticks import NodeOutcome, NodeStatus, Tick
 
 _OWN_TOPICS = (MISSION_TOPIC, TICKS_TOPIC, RESULT_TOPIC)
@@ -40,6 +42,8 @@ _BROKEN = (
     *(McapError, ZstdError, struct.error, EOFError),
     *(ValueError, KeyError, MemoryError, OverflowError),
 )
+
+_Found = tuple[Schema | None, Channel, Message]
 
 
 @dataclass(frozen=True, slots=True)
@@ -224,7 +228,7 @@ class Recording:
         """Return the messages of one channel as they are stored, in order."""
         return (message.data for _, _, message in _Reading(self.path).messages((topic,)))
 
-    def in_file_order(self) -> Iterator[tuple[Schema | None, Channel, Message]]:
+    def in_file_order(self) -> Iterator[_Found]:
         """Return every message as it stands in the file, in the order of writing."""
         return _Reading(self.path).in_file_order()
 
@@ -252,49 +256,51 @@ class Recording:
                 f"{self.path}: no tick {number}; expected 0 to {len(self._raw) - 1}"
             )
         if number not in self._decoded:
-            self._decoded[number] = TickMessage.model_validate_json(self._raw[number])
+            try:
+                self._decoded[number] = TickMessage.model_validate_json(self._raw[number])
+            except ValidationError as cause:  # a killed writer's file has no checksums
+                raise _no_recording(self.path, f"a damaged tick {number}") from cause
         return self._decoded[number]
 
 
 class _Reading:
-    """One pass over a file."""
+    """One pass over the files of a recording."""
 
     def __init__(self, path: Path) -> None:
         self._path = path
         self.complete = False
 
-    def messages(
-        self, topics: Sequence[str] | None
-    ) -> Iterator[tuple[Schema | None, Channel, Message]]:
-        """Return messages in file order, up to where the file is broken."""
+    def messages(self, topics: Sequence[str] | None) -> Iterator[_Found]:
+        """Return messages in file order, up to where a file is broken."""
+        return self._up_to_the_break(partial(_messages_of, topics=topics))
+
+    def in_file_order(self) -> Iterator[_Found]:
+        """Return every message in the order of writing, up to where a file is broken."""
+        return self._up_to_the_break(_one_after_another)
+
+    def _up_to_the_break(self, read: Callable[[BinaryIO], Iterator[_Found]]) -> Iterator[_Found]:
         try:
-            with self._path.open("rb") as file:
-                yield from _messages_of(file, topics)
+            for path in parts_of(self._path):
+                with path.open("rb") as file:
+                    yield from read(file)
             self.complete = True
         except OSError as cause:
             raise _no_recording(self._path, cause.strerror or str(cause)) from cause
         except _BROKEN:
             return
 
-    def in_file_order(self) -> Iterator[tuple[Schema | None, Channel, Message]]:
-        """Return every message in the order of writing, up to where the file is broken."""
-        try:
-            with self._path.open("rb") as file:
-                reader = NonSeekingReader(file, validate_crcs=True)
-                yield from reader.iter_messages(log_time_order=False)
-        except OSError as cause:
-            raise _no_recording(self._path, cause.strerror or str(cause)) from cause
-        except _BROKEN:
-            return
+
+def _one_after_another(file: BinaryIO, topics: Sequence[str] | None = None) -> Iterator[_Found]:
+    reader = NonSeekingReader(file, validate_crcs=True)
+    return reader.iter_messages(topics, log_time_order=False)
 
 
-def _messages_of(
-    file: BinaryIO, topics: Sequence[str] | None
-) -> Iterator[tuple[Schema | None, Channel, Message]]:
+def _messages_of(file: BinaryIO, topics: Sequence[str] | None) -> Iterator[_Found]:
     """Return messages with the help of the index, or one after another where there is none."""
     try:
         reader = SeekingReader(file, validate_crcs=True)
-        indexed = reader.get_summary() is not None
+        summary = reader.get_summary()
+        indexed = summary is not None and bool(summary.chunk_indexes)
     except _BROKEN:
         indexed = False
     if indexed:
@@ -302,7 +308,7 @@ def _messages_of(
         # unpacked before the first message comes out.
         return reader.iter_messages(topics, log_time_order=True)
     file.seek(0)
-    return NonSeekingReader(file, validate_crcs=True).iter_messages(topics, log_time_order=False)
+    return _one_after_another(file, topics)
 
 
 def _no_recording(path: Path, got: str) -> RecordingError:
