@@ -4,6 +4,7 @@ A subcommand's module is imported when that subcommand is asked for, so `check` 
 for what `run` needs. None of them loads a simulator, a planner or a network before it runs.
 """
 
+import keyword
 import sys
 import traceback
 from collections.abc import Mapping
@@ -20,6 +21,7 @@ from executive.core.errors import CellwrightError, InputError
 _COMMANDS: Mapping[str, str] = MappingProxyType(
     {
         "run": "executive.cli.cmd_run",
+        "resume": "executive.cli.cmd_resume",
         "check": "executive.cli.cmd_check",
         "lint": "executive.cli.cmd_lint",
         "fmt": "executive.cli.cmd_fmt",
@@ -35,6 +37,8 @@ _COMMANDS: Mapping[str, str] = MappingProxyType(
         "cover": "executive.cli.cmd_cover",
         "skills": "executive.cli.cmd_skills",
         "tree": "executive.cli.cmd_tree",
+        "import": "executive.cli.cmd_import",
+        "export": "executive.cli.cmd_export",
         "perceive": "executive.cli.cmd_perceive",
         "doctor": "executive.cli.cmd_doctor",
     }
@@ -55,7 +59,9 @@ class _LazyCommands(TyperGroup):
         """Import and return a command, None where there is none of that name."""
         if cmd_name not in _COMMANDS:
             return None
-        command = getattr(import_module(_COMMANDS[cmd_name]), cmd_name.replace("-", "_"))
+        name = cmd_name.replace("-", "_")
+        name = f"{name}_" if keyword.iskeyword(name) else name
+        command = getattr(import_module(_COMMANDS[cmd_name]), name)
         holder = typer.Typer()
         if isinstance(command, typer.Typer):
             holder.add_typer(command, name=cmd_name)

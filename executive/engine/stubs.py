@@ -101,7 +101,7 @@ class _Maker:
         outcomes: Sequence[StubOutcome] = stub.outcomes or (_AT_ONCE,)
         script = tuple(self._step(i, each, outputs) for i, each in enumerate(outcomes))
         namespace = {
-            "__doc__": stub.about or f"Answer as the stub {self._name} says.",
+            "__doc__": stub.about,
             "ACTS": stub.acts,
             "AFTER": stub.after,
             "INPUTS": inputs,

@@ -1,5 +1,6 @@
 """Nodes of our documents before they are written out."""
 
+import ast
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Literal
@@ -58,18 +59,30 @@ def block(kind: str, *children: Draft, **body: object) -> Draft:
 
 def all_of(texts: list[str]) -> str:
     """Return the condition that all of some conditions hold."""
-    return " and ".join(_bound(text) for text in texts) if len(texts) > 1 else texts[0]
+    return ast.unparse(joined(ast.And(), [_parsed(text) for text in texts]))
 
 
 def any_of(texts: list[str]) -> str:
     """Return the condition that one of some conditions holds."""
-    return " or ".join(_bound(text) for text in texts) if len(texts) > 1 else texts[0]
+    return ast.unparse(joined(ast.Or(), [_parsed(text) for text in texts]))
 
 
 def none_of(text: str) -> str:
     """Return the condition that a condition does not hold."""
-    return f"not {_bound(text)}"
+    tree = _parsed(text)
+    if isinstance(tree, ast.UnaryOp) and isinstance(tree.op, ast.Not):
+        return ast.unparse(tree.operand)
+    return ast.unparse(ast.UnaryOp(ast.Not(), tree))
 
 
-def _bound(text: str) -> str:
-    return text if text.replace("_", "a").isalnum() else f"({text})"
+def joined(operator: ast.boolop, values: list[ast.expr]) -> ast.expr:
+    """Join conditions, those that are joined in the same way already with the others."""
+    flat: list[ast.expr] = []
+    for value in values:
+        same = isinstance(value, ast.BoolOp) and type(value.op) is type(operator)
+        flat += value.values if same and isinstance(value, ast.BoolOp) else [value]
+    return ast.BoolOp(operator, flat) if len(flat) > 1 else flat[0]
+
+
+def _parsed(text: str) -> ast.expr:
+    return ast.parse(text, mode="eval").body

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from typing import Final, Literal
 
 from executive.core.errors import InputError
+from executive.engine.exchange.draft import joined
 
 Kind = Literal["bool", "number", "str", "any"]
 
@@ -182,7 +183,7 @@ class _Parser:
             operator = ast.And() if self._next() == "&&" else ast.Or()
             right, right_kind = self._comparison()
             sides = [self._as_bool(left, kind), self._as_bool(right, right_kind)]
-            left, kind = ast.BoolOp(operator, sides), "bool"
+            left, kind = joined(operator, sides), "bool"
         return left, kind
 
     def _comparison(self) -> tuple[ast.expr, Kind]:

@@ -9,7 +9,10 @@ from executive.engine.document import BLOCKS, DecoratorBody
 from executive.engine.exchange.draft import Draft
 
 WIDTH: Final = 100
+
 _PLAIN: Final = re.compile(r"[A-Za-z_$][A-Za-z0-9_ .()+*/<>=$'-]*")
+_ASKING: Final = frozenset({"when", "if", "unless", "while"})
+_ASSIGNING: Final = frozenset({"set", "on_success", "on_failure", "on_halt"})
 _WORDS: Final = frozenset({"true", "false", "null"})
 _ESCAPES: Final = {'"': '\\"', "\\": "\\\\", "\n": "\\n", "\t": "\\t", "\r": "\\r"}
 _DECORATORS: Final = frozenset(
@@ -98,7 +101,7 @@ def comment_lines(text: str, level: int = 0) -> list[str]:
 
 def _entry(key: str, value: object, level: int) -> list[str]:
     """Return `key: value` on one line if it fits, as a block otherwise."""
-    pad = "  " * level
+    pad, value = "  " * level, _as_written(key, value)
     line = f"{pad}{key}: {flow(value)}"
     nested = isinstance(value, Mapping) and any(
         isinstance(item, Mapping | list) for item in value.values()
@@ -112,6 +115,17 @@ def _entry(key: str, value: object, level: int) -> list[str]:
     return [f"{pad}{key}:", *(f"{pad}  - {flow(item)}" for item in value)]
 
 
+def _as_written(key: object, value: object) -> object:
+    """Return expressions that are a number, true or false as those of YAML."""
+    if key in _ASSIGNING and isinstance(value, Mapping):
+        return {name: _as_written("when", text) for name, text in value.items()}
+    if key not in _ASKING or not isinstance(value, str):
+        return value
+    if value in ("true", "false"):
+        return value == "true"
+    return int(value) if re.fullmatch("0|[1-9][0-9]{0,8}", value) else value
+
+
 def flow(value: object) -> str:
     """Return a value on one line."""
     match value:
@@ -122,7 +136,8 @@ def flow(value: object) -> str:
         case str():
             return _text(value)
         case Mapping():
-            return f"{{{', '.join(f'{_key(k)}: {flow(v)}' for k, v in value.items())}}}"
+            items = (f"{_key(k)}: {flow(_as_written(k, v))}" for k, v in value.items())
+            return f"{{{', '.join(items)}}}"
         case Sequence():
             return f"[{', '.join(flow(item) for item in value)}]"
     raise TypeError(f"{type(value).__name__} has no place in a document")

@@ -1,0 +1,518 @@
+"""Our trees as XML of BehaviorTree.CPP v4, or every reason why that cannot say them."""
+
+import inspect
+import re
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field
+from typing import Any, Final
+from xml.sax.saxutils import escape, quoteattr
+
+from executive.core.errors import DocumentError, Fault, InputError
+from executive.core.skill import Port, Skill, input_ports
+from executive.engine.document import (
+    ForEachBody,
+    NodeModel,
+    ParallelBody,
+    ReactiveSwitchBody,
+    RepeatBody,
+    RetryBody,
+    RunOnceBody,
+    SetNode,
+    SkillNode,
+    SubtreeNode,
+    TimeoutBody,
+    UnsetNode,
+    WaitNode,
+    WhenNode,
+)
+from executive.engine.exchange.cpptypes import cpp_type, read_literal, write_literal
+from executive.engine.exchange.dataflow import key_in
+from executive.engine.exchange.scripting import write_assignments, write_condition
+from executive.engine.exchange.vocabulary import LOOPS, SWITCHES
+from executive.engine.loader import Program
+from executive.engine.outline import NodeSpec, TreeSpec
+from executive.engine.porttypes import type_name
+from executive.engine.stubs import ScriptedSkill
+from executive.engine.values import Literal, key_of, parse_value
+
+_PLAIN: Final[Mapping[str, str]] = {
+    "sequence": "Sequence",
+    "reactive_sequence": "ReactiveSequence",
+    "selector": "Fallback",
+    "reactive_selector": "ReactiveFallback",
+    "if_then_else": "IfThenElse",
+    "while_do_else": "WhileDoElse",
+    "inverter": "Inverter",
+    "force_success": "ForceSuccess",
+    "force_failure": "ForceFailure",
+}
+_REFUSED: Final[Mapping[str, str]] = {
+    "cooldown": "has no counterpart there; try a skill that refuses to start so soon",
+    "wait_for": "has no counterpart there that waits between ticks; try a skill that waits",
+    "chance": "has no counterpart there; try a skill that draws",
+    "switch": "decides once, SwitchN there in every tick; try reactive_switch",
+    "running_is_success": "has no counterpart there",
+    "running_is_failure": "has no counterpart there",
+    "observe": "has no counterpart there; try a logger of BehaviorTree.CPP",
+}
+_ENDS: Final[Mapping[str, str]] = {
+    "on_success": "_onSuccess",
+    "on_failure": "_onFailure",
+    "on_halt": "_onHalted",
+}
+_QUOTES: Final = {"\n": "&#10;", "\r": "&#13;", "\t": "&#9;"}
+_NOT_XML: Final = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+_IN_ONE_TICK: Final = (
+    "a child that answers at once is run again within one tick there, here in the next one"
+)
+_LIMIT: Final = 2**31 - 1
+
+
+@dataclass(frozen=True, slots=True)
+class Exported:
+    """What an export came to.
+
+    Attributes:
+        text: The XML.
+        notes: What is different there.
+    """
+
+    text: str
+    notes: tuple[Fault, ...]
+
+
+@dataclass(slots=True)
+class _Xml:
+    """An element that is going to be written."""
+
+    tag: str
+    attributes: dict[str, str] = field(default_factory=dict)
+    children: list["_Xml"] = field(default_factory=list)
+    text: str = ""
+    comment: str = ""
+
+    def lines(self, level: int = 0) -> Iterable[str]:
+        """Yield the element line by line."""
+        pad = "  " * level
+        if self.comment:
+            yield f"{pad}<!-- {self.comment} -->"
+        attributes = "".join(f" {k}={_quoted(v)}" for k, v in self.attributes.items())
+        if self.children:
+            yield f"{pad}<{self.tag}{attributes}>"
+            for child in self.children:
+                yield from child.lines(level + 1)
+            yield f"{pad}</{self.tag}>"
+        elif self.text:
+            yield f"{pad}<{self.tag}{attributes}>{escape(self.text)}</{self.tag}>"
+        else:
+            yield f"{pad}<{self.tag}{attributes}/>"
+
+
+def _quoted(text: str) -> str:
+    return quoteattr(text, _QUOTES)
+
+
+def export_program(program: Program) -> Exported:
+    """Export a tree or a mission with every subtree.
+
+    Raises:
+        DocumentError: Everything that BehaviorTree.CPP cannot say.
+    """
+    return _Export(program).run()
+
+
+class _Export:
+    def __init__(self, program: Program) -> None:
+        self._program = program
+        self._faults: list[Fault] = []
+        self._notes: list[Fault] = []
+        self._skills: dict[str, type[Skill]] = {}
+        self._builders: Mapping[str, Callable[[NodeSpec, Any], _Xml]] = self._table()
+
+    def _table(self) -> dict[str, Callable[[NodeSpec, Any], _Xml]]:
+        return {
+            **dict.fromkeys(_PLAIN, self._plain),
+            "skill": self._skill,
+            "subtree": self._subtree,
+            "when": self._when,
+            "set": self._set,
+            "unset": self._unset,
+            "wait": self._wait,
+            "fail": self._fail,
+            "reactive_switch": self._switch,
+            "parallel": self._parallel,
+            "retry": self._retry,
+            "repeat": self._repeat,
+            "timeout": self._timeout,
+            "for_each": self._for_each,
+            "run_once": self._run_once,
+        }
+
+    def run(self) -> Exported:
+        trees = [self._program.tree, *self._program.subtrees.values()]
+        main = self._program.tree.name
+        root = _Xml("root", {"BTCPP_format": "4", "main_tree_to_execute": main})
+        root.children = [self._tree(tree) for tree in trees]
+        self._note_inputs(self._program.tree)
+        models = [*self._models(), *map(_tree_model, trees)]
+        if models:
+            root.children.append(_Xml("TreeNodesModel", {}, models))
+        if self._faults:
+            raise DocumentError(self._faults)
+        text = "\n".join(['<?xml version="1.0" encoding="UTF-8"?>', *root.lines()])
+        return Exported(f"{text}\n", tuple(self._notes))
+
+    def _tree(self, tree: TreeSpec) -> _Xml:
+        about = tree.document.about
+        comment = "" if "--" in about or about.endswith("-") else about
+        root = self._node(tree.root)
+        if tree.document.keep:
+            root = self._with_first_values(tree, root)
+        return _Xml("BehaviorTree", {"ID": tree.name}, [root], comment=_printable(comment))
+
+    def _with_first_values(self, tree: TreeSpec, root: _Xml) -> _Xml:
+        """Set keys once, however often the tree starts: RunOnce is skipped ever after."""
+        sets = []
+        for key, value in tree.document.keep.items():
+            try:
+                sets.append(f"{key} := {write_condition(_as_expression(value))}")
+            except InputError as error:
+                self._refuse(tree.root, str(error))
+        once = _Xml("RunOnce", {}, [_Xml("Script", {"code": "; ".join(sets)})])
+        return _Xml("Sequence", {}, [once, root])
+
+    def _note_inputs(self, tree: TreeSpec) -> None:
+        for name in tree.inputs:
+            message = f"input {name!r}: C++ code sets {{{name}}} before the first tick there"
+            line, column = tree.source.key_mark(("in", name))
+            self._notes.append(Fault(tree.source.file, line, column, "", message))
+
+    def _refuse(self, node: NodeSpec, message: str) -> None:
+        self._faults.append(node.fault(message))
+
+    def _note(self, node: NodeSpec, message: str) -> None:
+        self._notes.append(node.fault(message))
+
+    def _node(self, node: NodeSpec) -> _Xml:
+        model = node.model
+        try:
+            if model.kind not in self._builders:
+                what = _REFUSED.get(model.kind, "has no counterpart there")
+                raise InputError(f"{model.kind} {what}")
+            built = self._builders[model.kind](node, model)
+            if model.name:
+                built.attributes = {**_named(built, model.name)}
+            return self._guarded(model, built)
+        except InputError as error:
+            self._refuse(node, str(error))
+            for child in node.children:  # what is wrong below is told in the same pass
+                self._node(child)
+            return _Xml("AlwaysFailure")
+
+    def _guarded(self, model: NodeModel, built: _Xml) -> _Xml:
+        if model.about:
+            built.attributes["_description"] = _plain_text(model.about)
+        if model.while_ is not None:
+            asks = _Xml("ScriptCondition", {"code": write_condition(model.while_)})
+            built = _Xml("ReactiveSequence", {}, [asks, built])
+        if model.if_ is not None:
+            built.attributes["_failureIf"] = write_condition(model.if_, turned=True)
+        if model.unless is not None:
+            built.attributes["_successIf"] = write_condition(model.unless)
+        endings = model.endings
+        if "on_start" in endings:
+            raise InputError("on_start has no counterpart there; try a set before the node")
+        for keyword, attribute in _ENDS.items():
+            parts = [endings[k] for k in (keyword, "finally") if k in endings]
+            if parts:
+                built.attributes[attribute] = "; ".join(map(write_assignments, parts))
+        return built
+
+    def _children(self, node: NodeSpec) -> list[_Xml]:
+        return [self._node(child) for child in node.children]
+
+    def _plain(self, node: NodeSpec, model: NodeModel) -> _Xml:
+        return _Xml(_PLAIN[model.kind], {}, self._children(node))
+
+    def _skill(self, node: NodeSpec, model: SkillNode) -> _Xml:
+        skill = self._program.skills.get(model.skill)
+        name = foreign_id(model.skill, skill)
+        self._skills[name] = skill
+        if model.budget_s is not None:
+            self._note(node, "budget_s is left out: nothing watches the time of a step there")
+        attributes = {"ID": name, **self._wires(model, input_ports(skill))}
+        return _Xml("Action", attributes)
+
+    def _subtree(self, _: NodeSpec, model: SubtreeNode) -> _Xml:
+        tree = self._program.subtrees[model.subtree]
+        attributes = {"ID": tree.name, **self._wires(model, tree.inputs)}
+        for name, port in tree.inputs.items():
+            if name not in model.in_ and not port.required:
+                attributes[name] = _literal_text(port.default, port)
+        return _Xml("SubTree", attributes)
+
+    def _wires(self, model: SkillNode | SubtreeNode, ports: Mapping[str, Port]) -> dict[str, str]:
+        wires: dict[str, str] = {}
+        for name, raw in model.in_.items():
+            if name == "name":
+                raise InputError("an input called 'name' cannot be told from the node's name there")
+            wires[name] = _input_text(name, raw, ports[name])
+        for name, reference in model.out.items():
+            wires[name] = f"{{{reference.removeprefix('$')}}}"
+        return wires
+
+    def _when(self, _: NodeSpec, model: WhenNode) -> _Xml:
+        constant = {"true": "AlwaysSuccess", "false": "AlwaysFailure"}.get(model.when.strip())
+        if constant:
+            return _Xml(constant)
+        return _Xml("ScriptCondition", {"code": write_condition(model.when)})
+
+    def _set(self, _: NodeSpec, model: SetNode) -> _Xml:
+        return _Xml("Script", {"code": write_assignments(model.set)})
+
+    def _unset(self, _: NodeSpec, model: UnsetNode) -> _Xml:
+        each = [_Xml("UnsetBlackboard", {"key": key}) for key in model.keys]
+        return each[0] if len(each) == 1 else _Xml("Sequence", {}, each)
+
+    def _wait(self, _: NodeSpec, model: WaitNode) -> _Xml:
+        if model.wait == "forever":
+            raise InputError("wait: forever has no counterpart there; try a skill that waits")
+        return _Xml("Sleep", {"msec": _milliseconds(model.wait)})
+
+    def _fail(self, node: NodeSpec, _: NodeModel) -> _Xml:
+        self._note(node, "the reason is left out: a node fails without one there")
+        return _Xml("AlwaysFailure")
+
+    def _switch(self, node: NodeSpec, model: ReactiveSwitchBody) -> _Xml:
+        tag = f"Switch{len(model.cases)}"
+        if tag not in SWITCHES:
+            raise InputError(f"{len(model.cases)} cases; expected 2 to 6 there, try a selector")
+        key = key_of(parse_value(f"${model.on}"))
+        if key is None:
+            raise InputError(f"on: {model.on!r} is no plain key; try to set one before")
+        attributes = {"variable": f"{{{key}}}"}
+        for i, text in enumerate(model.cases, start=1):
+            if key_in(text, "") is not None:
+                raise InputError(f"case {text!r} would be a key there")
+            attributes[f"case_{i}"] = _plain_text(text)
+        children = self._children(node)
+        if model.default is None:
+            children.append(_Xml("AlwaysFailure"))
+        return _Xml(tag, attributes, children)
+
+    def _parallel(self, node: NodeSpec, model: ParallelBody) -> _Xml:
+        count = len(node.children)
+        need = _needed(model, [child.name for child in node.children])
+        possible = count - need + 1  # so many failures put success out of reach
+        amounts = {"any": 1, "all": count, None: possible}
+        fail = model.fail if isinstance(model.fail, int) else amounts[model.fail]
+        children = self._children(node)
+        if fail > possible:
+            raise InputError(
+                f"fail: {fail} waits for failures when success is out of reach; there a Parallel "
+                f"fails with {possible}, try fail: {possible}"
+            )
+        if model.on_done == "wait":
+            if fail != possible:
+                raise InputError(
+                    f"on_done: wait needs fail: {possible} to be a ParallelAll there; got {fail}"
+                )
+            return _Xml("ParallelAll", {"max_failures": str(fail)}, children)
+        if fail < possible:
+            self._note(
+                node,
+                "when enough children succeed and enough fail in one tick, it succeeds here; "
+                "there the first of them decides",
+            )
+        return _Xml("Parallel", {"success_count": str(need), "failure_count": str(fail)}, children)
+
+    def _retry(self, node: NodeSpec, model: RetryBody) -> _Xml:
+        if model.delay_s != 0.0:
+            raise InputError(
+                "delay_s has no counterpart there; try a sequence of the child after a wait"
+            )
+        self._note(node, _IN_ONE_TICK)
+        times = _times(model.times)
+        return _Xml("RetryUntilSuccessful", {"num_attempts": times}, self._children(node))
+
+    def _repeat(self, node: NodeSpec, model: RepeatBody) -> _Xml:
+        if model.delay_s != 0.0:
+            raise InputError("delay_s has no counterpart there; try a wait in a sequence")
+        self._note(node, _IN_ONE_TICK)
+        return _Xml("Repeat", {"num_cycles": _times(model.times)}, self._children(node))
+
+    def _timeout(self, node: NodeSpec, model: TimeoutBody) -> _Xml:
+        return _Xml("Timeout", {"msec": _milliseconds(model.seconds)}, self._children(node))
+
+    def _for_each(self, node: NodeSpec, model: ForEachBody) -> _Xml:
+        value = parse_value(model.in_)
+        items = value.value if isinstance(value, Literal) else None
+        if not isinstance(items, list):
+            raise InputError(
+                "in: a queue is emptied by its loop there, so a key of a list would not keep it; "
+                "try a literal list"
+            )
+        kinds = {type(item).__name__ for item in items}
+        if kinds == {"int", "float"}:
+            kinds = {"float"}
+        tag = next((loop for loop, kind in LOOPS.items() if {_ITEMS[kind]} == kinds), None)
+        if tag is None:
+            raise InputError("in: expected a list of texts or of numbers there, with one or more")
+        texts = [write_literal(item) for item in items]
+        if any(";" in text or text != text.strip() for text in texts):
+            raise InputError("in: a text with ';' cannot stand in a queue there")
+        key = model.item.removeprefix("$")
+        attributes = {"queue": ";".join(texts), "if_empty": "SUCCESS", "value": f"{{{key}}}"}
+        self._note(node, "ends one tick after the last item there, here in the same one")
+        return _Xml(tag, attributes, self._children(node))
+
+    def _run_once(self, node: NodeSpec, model: RunOnceBody) -> _Xml:
+        if model.until != "finished":
+            raise InputError("until: success has no counterpart there; RunOnce keeps any answer")
+        return _Xml("RunOnce", {"then_skip": "false"}, self._children(node))
+
+    def _models(self) -> Iterable[_Xml]:
+        for name, skill in sorted(self._skills.items()):
+            about = (inspect.getdoc(skill) or "").partition("\n")[0]
+            ports = _port_models(input_ports(skill), skill.OUT)
+            yield _Xml("Action", {"ID": name}, ports, comment=_comment(about))
+
+
+_ITEMS: Final = {"int": "int", "bool": "bool", "double": "float", "std::string": "str"}
+
+
+def foreign_id(name: str, skill: type[Skill]) -> str:
+    """Return what a skill is called there: what its stub stands for, or its own name."""
+    stands_for = skill.STANDS_FOR if issubclass(skill, ScriptedSkill) else ""
+    return stands_for or name
+
+
+def _tree_model(tree: TreeSpec) -> _Xml:
+    return _Xml("SubTree", {"ID": tree.name}, _port_models(tree.inputs, tree.outputs))
+
+
+def _port_models(inputs: Mapping[str, Port], outputs: Mapping[str, Port]) -> list[_Xml]:
+    found = []
+    for tag, ports in (("input_port", inputs), ("output_port", outputs)):
+        for name, port in ports.items():
+            attributes = {"name": name}
+            if kind := cpp_type(type_name(port.type)):
+                attributes["type"] = kind
+            if not port.required and tag == "input_port" and port.default is not None:
+                attributes["default"] = _default_text(port)
+            unit = f" [{port.unit}]" if port.unit else ""
+            found.append(_Xml(tag, attributes, text=_printable(f"{port.about}{unit}".strip())))
+    return found
+
+
+def _default_text(port: Port) -> str:
+    """Return a default for the palette of an editor, in words where it is no plain value."""
+    try:
+        return _literal_text(port.default, port)
+    except InputError:
+        return _printable(str(port.default))
+
+
+def _named(element: _Xml, name: str) -> dict[str, str]:
+    """Put the name of a node behind its ID, before its ports."""
+    first = {k: v for k, v in element.attributes.items() if k == "ID"}
+    return {**first, "name": name, **element.attributes}
+
+
+def _comment(text: str) -> str:
+    return "" if "--" in text or text.endswith("-") else _printable(text)
+
+
+def _printable(text: str) -> str:
+    return _NOT_XML.sub(" ", text)
+
+
+def _plain_text(text: str) -> str:
+    if _NOT_XML.search(text):
+        raise InputError(f"{text!r} has characters that XML cannot hold")
+    return text
+
+
+def _input_text(name: str, raw: object, port: Port) -> str:
+    value = parse_value(raw)
+    if isinstance(value, Literal):
+        try:
+            return _literal_text(value.value, port)
+        except InputError as error:
+            raise InputError(f"input {name!r}: {error}") from None
+    key = key_of(value)
+    if key is None:
+        raise InputError(
+            f"input {name!r}: ports there take no expressions such as {value.text!r}; "
+            "try to set a key before"
+        )
+    return f"{{{key}}}"
+
+
+def _literal_text(value: object, port: Port) -> str:
+    """Return a literal as an attribute that is read back as the same value."""
+    if isinstance(value, tuple):
+        value = list(value)
+    kind = type_name(port.type)
+    for text in (write_literal(value), write_literal({"": value})[len('json:{"": ') : -1]):
+        as_json = text if text.startswith("json:") else f"json:{text}"
+        for attempt in (text, as_json):
+            if _reads_back(attempt, value, kind):
+                return attempt
+    raise InputError(f"{value!r} cannot stand in an attribute there")
+
+
+def _reads_back(text: str, value: object, kind: str) -> bool:
+    if _NOT_XML.search(text) or key_in(text, "") is not None:
+        return False
+    try:
+        back = read_literal(text, kind)
+    except InputError:
+        return False
+    same_type = type(back) is type(value) or {type(back), type(value)} == {int, float}
+    return back == value and same_type
+
+
+def _milliseconds(seconds: float | str) -> str:
+    if isinstance(seconds, str):
+        text = seconds.removeprefix("$").replace(" ", "")
+        key = text.removesuffix("/1000")
+        if key == text or not key.isidentifier():
+            raise InputError(
+                f"{seconds!r}: there the time is a number of milliseconds, or a key of one; "
+                "try '$key / 1000'"
+            )
+        return f"{{{key}}}"
+    whole = round(seconds * 1000)
+    if abs(whole - seconds * 1000) > 1e-6 or not 0 < whole <= _LIMIT:
+        if seconds == 0.0:
+            return "0"
+        raise InputError(f"{seconds:g} s is no whole number of milliseconds, 1 to {_LIMIT}")
+    return str(whole)
+
+
+def _times(times: int | str) -> str:
+    if isinstance(times, int):
+        return str(times)
+    if times == "forever":
+        return "-1"
+    key = key_of(parse_value(times))
+    if key is None:
+        raise InputError(f"times: {times!r} is no plain key; try to set one before")
+    return f"{{{key}}}"
+
+
+def _needed(model: ParallelBody, names: list[str]) -> int:
+    if isinstance(model.succeed, int):
+        return model.succeed
+    if isinstance(model.succeed, tuple):
+        if sorted(model.succeed) != sorted(names):
+            raise InputError("succeed by names has no counterpart there; try a count")
+        return len(names)
+    return len(names) if model.succeed == "all" else 1
+
+
+def _as_expression(value: object) -> str:
+    if value is None or isinstance(value, bool):
+        return {None: "none", True: "true", False: "false"}[value]
+    return repr(value)
