@@ -14,7 +14,8 @@ class Write:
     """One value written to the blackboard.
 
     Attributes:
-        key: `TREE/PATH:name`, where the path is that of the root of the tree that owns it.
+        key: `TREE/PATH:name`, where the path is that of the root of the tree that owns it;
+            `TREE/PATH.OWNER:name` where a subtree is the root of another tree.
         value: The value itself, not a copy: values on the blackboard are never changed;
             `Unset.UNSET` where the key has none from then on.
         writer: Path of the node that wrote it; `""` for an input of the mission.
@@ -37,10 +38,13 @@ class Blackboard:
     def __init__(self) -> None:
         """Start empty."""
         self._values: dict[str, object] = {}
+        self._owned: dict[str, set[str]] = {}
         self._writes: list[Write] = []
 
     def write(self, key: str, value: object, writer: str) -> None:
         """Set a key."""
+        if key not in self._values:
+            self._owned.setdefault(key.rpartition(":")[0], set()).add(key)
         self._values[key] = value
         self._writes.append(Write(key, value, writer))
 
@@ -48,6 +52,7 @@ class Blackboard:
         """Take the value of a key away; nothing happens where it has none."""
         if key in self._values:
             del self._values[key]
+            self._owned[key.rpartition(":")[0]].discard(key)
             self._writes.append(Write(key, Unset.UNSET, writer))
 
     def read(self, key: str) -> object:
@@ -57,6 +62,10 @@ class Blackboard:
             KeyError: Nothing has written it yet.
         """
         return self._values[key]
+
+    def owned_by(self, path: str) -> tuple[str, ...]:
+        """Return the keys with a value that belong to the tree whose root has that path."""
+        return tuple(sorted(self._owned.get(path, ())))
 
     def __contains__(self, key: object) -> bool:
         return key in self._values

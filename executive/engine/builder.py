@@ -15,6 +15,7 @@ from executive.core.clock import Clock, MissionClock
 from executive.core.errors import DocumentError, Fault, InputError
 from executive.core.registry import closest
 from executive.core.skill import input_ports
+from executive.engine.activations import starting_with
 from executive.engine.assembly import Site, assemble, guard
 from executive.engine.blackboard import Blackboard
 from executive.engine.checkpoints.node import CheckpointGate, CheckpointSignal
@@ -119,6 +120,7 @@ def build(
     scope = Scope(program.tree.name, blackboard)
     for name, value in _inputs(program.tree, inputs).items():
         scope.write(name, value, writer="")
+    scope.keep(program.tree.document.keep)
     mission_clock, supervision = MissionClock(clock), _supervision(program)
     builder = _Builder(program, devices, mission_clock, blackboard, supervision, seed)
     root = builder.build(program.tree.root, _Place(program.tree.name, None, scope, program.tree))
@@ -199,6 +201,7 @@ class _Builder:
         self.faults: list[Fault] = []
         self.checkpoints = CheckpointSignal()
         self._paths_around: set[str] = set()
+        self._owners = {program.tree.name}
 
     def build(self, spec: NodeSpec, place: _Place) -> Behaviour:
         """Build a node and everything below it."""
@@ -259,16 +262,24 @@ class _Builder:
         self._fill(index, spec, place, behaviour, spec.model.kind)
         return behaviour
 
+    def _owner(self, path: str, tree: TreeSpec) -> str:
+        """Return what the keys of a tree begin with; at its root another may stand already."""
+        owner = path if path not in self._owners else f"{path}.{tree.name}"
+        self._owners.add(owner)
+        return owner
+
     def _subtree(self, model: SubtreeNode, place: _Place) -> Behaviour:
         tree = self._program.subtrees[model.subtree]
-        scope = Scope(place.path, self._blackboard)
+        scope = Scope(self._owner(place.path, tree), self._blackboard)
         wired = {name: parse_value(raw) for name, raw in model.in_.items()}
         for name, port in tree.inputs.items():
             value = fitted(wired.get(name, Literal(port.default)), port.type)
             scope.bind_input(name, value, place.scope, port.default)
         for name, reference in model.out.items():
             scope.bind_output(name, reference.removeprefix("$"), place.scope)
-        return self.build(tree.root, _Place(place.path, place.parent, scope, tree))
+        scope.keep(tree.document.keep)
+        root = self.build(tree.root, _Place(place.path, place.parent, scope, tree))
+        return starting_with(root, scope.start_anew)
 
     def _skill(self, spec: NodeSpec, model: SkillNode, place: _Place) -> Behaviour:
         skill = self._program.skills.get(model.skill)

@@ -14,6 +14,7 @@ from executive.engine.nodeports import PortTable
 from executive.engine.outline import NodeSpec, TreeSpec
 from executive.engine.porttypes import accepts, is_sequence, type_name
 from executive.engine.structure import structural_faults
+from executive.engine.units import unit_of
 from executive.engine.values import key_of
 from executive.engine.wiring import Gives, Use, wire
 
@@ -40,7 +41,8 @@ def check_tree(
         for gives in wiring.written:
             check.write(node, gives)
     check.outputs()
-    find_early_reads(tree.root, wirings, frozenset(tree.inputs), check.early_read)
+    given = frozenset({*tree.inputs, *tree.document.keep})
+    find_early_reads(tree.root, wirings, given, check.early_read)
     return faults
 
 
@@ -69,6 +71,7 @@ class _WiringCheck:
             self._complain(node, use, f"expected true or false, got {type_name(kind)}; try {hint}")
         if use.port is not None:
             self._input(node, use, use.port, kind)
+        self._unit(node, use)
         for case, fault in case_faults(use.cases, kind):
             self._faults.append(node.fault(fault, "cases", case))
 
@@ -78,9 +81,17 @@ class _WiringCheck:
             origin = f", written by {self._keys.misfit(key, port.type)}" if key else ""
             given = f"${use.value.text} is {type_name(kind)}{origin}"
             self._complain(node, use, f"expected {type_name(port.type)}, but {given}")
-        unit = self._keys.unit(key) if key else ""
-        if port.unit and unit and port.unit != unit:
-            self._complain(node, use, f"expected the unit {port.unit}, but ${key} is in {unit}")
+
+    def _unit(self, node: NodeSpec, use: Use) -> None:
+        try:
+            unit = unit_of(use.value, self._keys.units)
+        except InputError as error:
+            self._complain(node, use, str(error))
+            return
+        wanted = use.port.unit if use.port else ""
+        if wanted and unit and wanted != unit:
+            given = f"${use.value.text} is in {unit}"
+            self._complain(node, use, f"expected the unit {wanted}, but {given}")
 
     def write(self, node: NodeSpec, gives: Gives) -> None:
         """Check a write: not to an input, and to an output with its type and unit."""
@@ -88,6 +99,7 @@ class _WiringCheck:
         if key in self._tree.inputs:
             message = f"{key!r} is an input of the tree, which is not written; try another key"
             self._faults.append(node.fault(message, *gives.at))
+        self._written_unit(node, gives)
         declared = self._tree.outputs.get(key)
         if declared is None:
             return
@@ -96,9 +108,14 @@ class _WiringCheck:
             wanted = f"output {key!r} of the tree is {type_name(declared.type)}"
             message = f"{wanted}, but this writes {type_name(kind)}"
             self._faults.append(node.fault(message, *gives.at))
-        unit = gives.port.unit if gives.port else ""
-        if unit and declared.unit and unit != declared.unit:
-            message = f"output {key!r} of the tree is in {declared.unit}, this in {unit}"
+
+    def _written_unit(self, node: NodeSpec, gives: Gives) -> None:
+        """Check that all who write a key do so in one unit."""
+        unit, wanted = self._keys.written_unit(gives), self._keys.units.get(gives.key, "")
+        if unit and wanted and unit != wanted:
+            is_output = gives.key in self._tree.outputs
+            what = f"output {gives.key!r} of the tree" if is_output else f"${gives.key}"
+            message = f"{what} is in {wanted}, this in {unit}"
             self._faults.append(node.fault(message, *gives.at))
 
     def outputs(self) -> None:

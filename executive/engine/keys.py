@@ -1,12 +1,13 @@
 """The keys of one tree: who writes each, and what type and unit it has."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any, Union
 
 from executive.core.errors import InputError
 from executive.engine.inference import infer
 from executive.engine.outline import NodeSpec, TreeSpec
-from executive.engine.porttypes import accepts, is_sequence, item_type
+from executive.engine.porttypes import accepts, is_sequence, item_type, literal_type
+from executive.engine.units import unit_of
 from executive.engine.wiring import Gives, Wiring
 
 
@@ -14,7 +15,8 @@ class KeyTable:
     """What is known about keys before the first tick.
 
     Attributes:
-        types: Type of each key that is declared or written.
+        types: Type of each key that is declared, written or kept.
+        units: Unit of each key that has one.
         writers: Nodes that write each key, and how.
     """
 
@@ -27,23 +29,30 @@ class KeyTable:
                 self.writers.setdefault(gives.key, []).append((node, gives))
         declared = {**tree.outputs, **tree.inputs}
         self.types: dict[str, Any] = {name: port.type for name, port in declared.items()}
-        self._settle_types()
+        self._settle(self.types, self._type_of_all)
+        self.units: dict[str, str] = {
+            name: port.unit for name, port in declared.items() if port.unit
+        }
+        self._settle(self.units, self._first_unit)
 
-    def _settle_types(self) -> None:
-        """Work out the types of the keys that the tree does not declare.
+    def _settle(self, known: dict[str, Any], work_out: Callable[[str], Any]) -> None:
+        """Work out what the tree does not declare of its keys.
 
         Assignments may build on each other, so they are looked at until nothing changes.
         """
-        own = [key for key in self.writers if key not in self.types]
+        own = [key for key in {**self.writers, **self._tree.document.keep} if key not in known]
         for _ in range(len(own) + 1):
-            before = dict(self.types)
+            before = dict(known)
             for key in own:
-                self.types[key] = self._type_of_all(key)
-            if self.types == before:
+                known[key] = work_out(key)
+            if known == before:
                 return
 
     def _type_of_all(self, key: str) -> Any:
-        kinds = tuple(dict.fromkeys(self.written_type(gives) for _, gives in self.writers[key]))
+        kept = self._tree.document.keep
+        first = [literal_type(kept[key])] if key in kept else []
+        written = [self.written_type(gives) for _, gives in self.writers.get(key, [])]
+        kinds = tuple(dict.fromkeys(first + written))
         return Any if Any in kinds else Union[kinds]  # noqa: UP007 - the members are values
 
     def written_type(self, gives: Gives) -> Any:
@@ -70,8 +79,16 @@ class KeyTable:
                 return node.path
         return "this tree: it is an output"
 
-    def unit(self, key: str) -> str:
-        """Return the unit that somebody declares for a key, empty where nobody does."""
-        ports = [self._tree.inputs.get(key), self._tree.outputs.get(key)]
-        ports += [gives.port for _, gives in self.writers.get(key, [])]
-        return next((port.unit for port in ports if port and port.unit), "")
+    def _first_unit(self, key: str) -> str:
+        units = (self.written_unit(gives) for _, gives in self.writers.get(key, []))
+        return next((unit for unit in units if unit), "")
+
+    def written_unit(self, gives: Gives) -> str:
+        """Return the unit of what a node writes, empty where it cannot be told."""
+        if gives.port is not None:
+            return gives.port.unit
+        source = gives.value or gives.item_of
+        try:
+            return unit_of(source, self.units) if source else ""
+        except InputError:
+            return ""  # told where the expression is used

@@ -121,6 +121,13 @@ def type_name(kind: Any) -> str:
     return str(getattr(_class(kind), "__name__", kind))
 
 
+def literal_type(value: object) -> Any:
+    """Return the type of a value as it stands in a file."""
+    if isinstance(value, list):
+        return list[Any]
+    return dict[str, Any] if isinstance(value, dict) else type(value)
+
+
 def union_members(kind: Any) -> tuple[Any, ...]:
     """Return the members of a union, nothing for any other type."""
     if typing.get_origin(kind) in (Union, types.UnionType):

@@ -23,6 +23,7 @@ class Scope:
         self._keys: dict[str, str] = {}
         self._inputs: dict[str, tuple[Value, Scope]] = {}
         self._defaults: dict[str, object] = {}
+        self._kept: frozenset[str] = frozenset()
 
     def bind_input(self, name: str, value: Value, outer: "Scope", default: object) -> None:
         """Make an input stand for what the outer tree gave.
@@ -69,6 +70,18 @@ class Scope:
     def write(self, name: str, value: object, writer: str) -> None:
         """Set a key."""
         self._blackboard.write(self.key(name), value, writer)
+
+    def keep(self, values: Mapping[str, object]) -> None:
+        """Name the keys that outlive an activation, and give them their first values."""
+        self._kept = frozenset(self.key(name) for name in values)
+        for name, value in values.items():
+            self.write(name, value, self._path)
+
+    def start_anew(self) -> None:
+        """Forget what the tree has written in earlier activations, but for what it keeps."""
+        for key in self._blackboard.owned_by(self._path):
+            if key not in self._kept:
+                self._blackboard.unset(key, self._path)
 
     def unset(self, name: str, writer: str) -> None:
         """Take the value of a key away."""

@@ -23,6 +23,7 @@ def structural_faults(tree: TreeSpec, skills: Registry[type[Skill]]) -> Iterator
     if root.model.name not in (None, tree.name):
         message = f"the root is named after its tree, {tree.name!r}; drop the name"
         yield root.fault(message, "name")
+    yield from _keep_faults(tree)
     for node in root.walk():
         model = node.model
         if isinstance(model, SkillNode) and model.skill not in skills:
@@ -36,6 +37,18 @@ def structural_faults(tree: TreeSpec, skills: Registry[type[Skill]]) -> Iterator
             yield node.fault("observe needs a key for status, counts or both")
         if isinstance(model, ParallelBody):
             yield from _policy_faults(node, model)
+
+
+def _keep_faults(tree: TreeSpec) -> Iterator[Fault]:
+    for key, value in tree.document.keep.items():
+        if key in tree.inputs or key in tree.outputs:
+            message = f"{key!r} is a port of the tree, which has its value from outside"
+        elif isinstance(value, str) and value.startswith("$"):
+            message = f"{key!r} needs a first value that is written out; got {value!r}"
+        else:
+            continue
+        line, column = tree.source.value_mark(("keep", key))
+        yield Fault(tree.source.file, line, column, tree.name, f"keep: {message}")
 
 
 def _unset_faults(node: NodeSpec, model: UnsetNode, tree: TreeSpec) -> Iterator[Fault]:
