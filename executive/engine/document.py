@@ -6,22 +6,20 @@ generated from these models.
 """
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Union
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 from pydantic import (
     BaseModel,
     BeforeValidator,
     ConfigDict,
-    Discriminator,
     Field,
     GetCoreSchemaHandler,
     GetJsonSchemaHandler,
     StringConstraints,
-    Tag,
     WithJsonSchema,
 )
 from pydantic_core import PydanticCustomError, core_schema
-from typing_extensions import TypeAliasType
 
 Name = Annotated[str, StringConstraints(strict=True, pattern=r"^[a-z][a-z0-9_]*$")]
 Text = Annotated[str, Field(strict=True)]
@@ -204,43 +202,6 @@ class ChanceNode(NodeModel):
     chance: Annotated[float, Field(strict=True, ge=0.0, le=1.0)] | Formula = Field(
         description="Probability of success, 0 to 1."
     )
-
-
-class _Under:
-    """Reads a node whose own keys stand under its kind: `sequence: {name: ..., children: ...}`.
-
-    A plain list there is the list of its children.
-    """
-
-    def __init__(self, kind: str) -> None:
-        self._kind = kind
-
-    def _body(self, value: Any) -> Any:
-        beside = [key for key in value if key != self._kind]
-        if beside:
-            raise PydanticCustomError(
-                "beside",
-                "{key} stands beside {kind}; try it under {kind}",
-                {"key": repr(beside[0]), "kind": repr(self._kind)},
-            )
-        body = value[self._kind]
-        return {"children": body} if isinstance(body, list) else body
-
-    def __get_pydantic_core_schema__(
-        self, source: Any, handler: GetCoreSchemaHandler
-    ) -> core_schema.CoreSchema:
-        return core_schema.no_info_before_validator_function(self._body, handler(source))
-
-    def __get_pydantic_json_schema__(
-        self, schema: core_schema.CoreSchema, handler: GetJsonSchemaHandler
-    ) -> dict[str, Any]:
-        body = handler(schema)
-        return {
-            "type": "object",
-            "properties": {self._kind: body},
-            "required": [self._kind],
-            "additionalProperties": False,
-        }
 
 
 class BlockBody(NodeModel):
@@ -453,20 +414,52 @@ def kind_of(value: object) -> str | None:
 if TYPE_CHECKING:
     Node = NodeModel
 else:
-    # Discriminated by its kind, so that a fault speaks of that kind alone; an alias with a
-    # name, so that pydantic builds it once and not in every place where a node may stand.
-    Node = TypeAliasType(
-        "Node",
-        Annotated[
-            Union[  # noqa: UP007 - its members come out of tables
-                tuple(
-                    [Annotated[model, Tag(kind)] for kind, model in LEAVES.items()]
-                    + [Annotated[model, _Under(kind), Tag(kind)] for kind, model in BLOCKS.items()]
-                )
-            ],
-            Discriminator(kind_of),
-        ],
-    )
+
+    class Node:
+        """Any node; read by the model of its kind alone.
+
+        So a fault speaks of that kind only, and pydantic builds no kind that no file uses:
+        building all of them takes longer than checking a tree.
+        """
+
+        @classmethod
+        def __get_pydantic_core_schema__(
+            cls, source: Any, handler: GetCoreSchemaHandler
+        ) -> core_schema.CoreSchema:
+            return core_schema.no_info_plain_validator_function(_read_node)
+
+        @classmethod
+        def __get_pydantic_json_schema__(
+            cls, schema: core_schema.CoreSchema, handler: GetJsonSchemaHandler
+        ) -> dict[str, Any]:
+            return dict(NODE_SCHEMA)
+
+
+NODE_SCHEMA: Mapping[str, str] = MappingProxyType({"$comment": "any node"})
+"""Stands for a node in JSON schemas of single models; `executive.engine.schema` fills it in."""
+
+
+def _read_node(value: object) -> NodeModel:
+    """Return a node; what pydantic says of it has its own place in front."""
+    kind = kind_of(value)
+    if kind is None or not isinstance(value, Mapping):
+        raise PydanticCustomError("no_node", "expected a node")
+    if kind in LEAVES:
+        return LEAVES[kind].model_validate(value)
+    return BLOCKS[kind].model_validate(_under(kind, value))
+
+
+def _under(kind: str, value: Mapping[str, Any]) -> Any:
+    """Return what stands under the kind of a node; a plain list there is that of its children."""
+    beside = [key for key in value if key != kind]
+    if beside:
+        raise PydanticCustomError(
+            "beside",
+            "{key} stands beside {kind}; try it under {kind}",
+            {"key": repr(beside[0]), "kind": repr(kind)},
+        )
+    body = value[kind]
+    return {"children": body} if isinstance(body, list) else body
 
 
 class OutPort(Model):

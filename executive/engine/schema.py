@@ -8,9 +8,17 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from pydantic import TypeAdapter
+from pydantic.json_schema import models_json_schema
 
-from executive.engine.document import BLOCKS, BlockBody, Document
+from executive.engine.document import (
+    BLOCKS,
+    DOCUMENTS,
+    LEAVES,
+    NODE_SCHEMA,
+    BlockBody,
+    Model,
+    NodeModel,
+)
 from executive.engine.library import packaged_trees
 
 SCHEMA_FILE = Path("schema") / "tree.schema.json"
@@ -18,12 +26,14 @@ SCHEMA_FILE = Path("schema") / "tree.schema.json"
 
 def make_schema() -> dict[str, Any]:
     """Return the JSON schema of trees, missions and cells."""
-    schema = TypeAdapter(Document).json_schema(by_alias=True)
-    schema["$defs"]["Node"] = _with_plain_lists(schema["$defs"]["Node"])
+    models = [*DOCUMENTS.values(), *LEAVES.values(), *BLOCKS.values()]
+    _, schema = models_json_schema([(model, "validation") for model in models], by_alias=True)
+    schema["$defs"]["Node"] = _any_node()
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": "Cellwright trees, missions and cells",
-        **_without_titles(schema),
+        "anyOf": [_reference(model) for model in DOCUMENTS.values()],
+        "$defs": _filled_in(schema["$defs"]),
     }
 
 
@@ -32,27 +42,43 @@ def schema_text() -> str:
     return json.dumps(make_schema(), indent=2, sort_keys=True) + "\n"
 
 
-def _with_plain_lists(node: dict[str, Any]) -> dict[str, Any]:
-    """Let a list stand for a block with children and nothing else to say."""
-    plain = {"type": "array", "items": {"$ref": "#/$defs/Node"}, "minItems": 1}
-    kinds = [dict(kind) for kind in node["oneOf"]]
-    for kind in kinds:
-        for name, body in kind.get("properties", {}).items():
-            if issubclass(BLOCKS[name], BlockBody):
-                kind["properties"] = {name: {"anyOf": [body, plain]}}
-    return {"oneOf": kinds}
+def _reference(model: type[Model]) -> dict[str, Any]:
+    return {"$ref": f"#/$defs/{model.__name__}"}
 
 
-def _without_titles(part: Any) -> Any:
-    """Drop the titles that only repeat the names of the keys."""
+def _any_node() -> dict[str, Any]:
+    return {
+        "oneOf": [
+            *(_reference(model) for model in LEAVES.values()),
+            *(_block(kind, model) for kind, model in BLOCKS.items()),
+        ]
+    }
+
+
+def _block(kind: str, model: type[NodeModel]) -> dict[str, Any]:
+    """Return a node whose keys stand under its kind; a list there is that of its children."""
+    body = _reference(model)
+    if issubclass(model, BlockBody):
+        children = {"type": "array", "items": dict(NODE_SCHEMA), "minItems": 1}
+        body = {"anyOf": [body, children]}
+    return {
+        "type": "object",
+        "properties": {kind: body},
+        "required": [kind],
+        "additionalProperties": False,
+    }
+
+
+def _filled_in(part: Any) -> Any:
+    """Put in what stands for a node, and drop titles that only repeat the names of the keys."""
+    if isinstance(part, dict) and NODE_SCHEMA.items() <= part.items():
+        return {"$ref": "#/$defs/Node"}
     if isinstance(part, dict):
         titled = isinstance(part.get("title"), str)
         return {
-            key: _without_titles(value)
-            for key, value in part.items()
-            if not (titled and key == "title")
+            key: _filled_in(value) for key, value in part.items() if not (titled and key == "title")
         }
-    return [_without_titles(item) for item in part] if isinstance(part, list) else part
+    return [_filled_in(item) for item in part] if isinstance(part, list) else part
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
 """Holds what was read against the models, and says what is wrong in the words of the file."""
 
 from collections import defaultdict
-from collections.abc import Mapping
+from collections.abc import Container, Mapping
 from typing import Any, Final
 
 from pydantic import ValidationError
@@ -17,6 +17,7 @@ from executive.engine.document import (
     InPort,
     Model,
     OutPort,
+    kind_of,
 )
 from executive.engine.outline import node_paths, value_at
 from executive.engine.sources import Source, YamlPath
@@ -80,17 +81,18 @@ def _translate(source: Source, model: type[Document], error: ValidationError) ->
     """Say what pydantic found; what several members of a union say of one value is joined."""
     said: dict[tuple[YamlPath, bool], list[str]] = defaultdict(list)
     whole: list[Fault] = []
+    nodes = node_paths(source.data)
     for detail in error.errors(include_url=False, include_input=False):
-        path, inner = _yaml_path(source.data, detail["loc"])
+        path, inner = _yaml_path(source.data, detail["loc"], nodes)
         context = {name: _number(value) for name, value in detail.get("ctx", {}).items()}
         match detail["type"]:
             case "extra_forbidden":
-                known = _known_keys(model, detail["loc"])
+                known = _known_keys(model, source.data, path, nodes)
                 message = f"unknown key {path[-1]!r}; {closest(str(path[-1]), known)}"
                 whole.append(_fault(source, path, message, at_key=True))
             case "missing":
                 whole.append(_fault(source, path, f"missing key {detail['loc'][-1]!r}"))
-            case "union_tag_not_found":
+            case "no_node":
                 whole.append(_fault(source, path, _no_node(value_at(source.data, path))))
             case "beside":
                 whole.append(_fault(source, path, detail["msg"]))
@@ -162,46 +164,41 @@ def _fault(source: Source, path: YamlPath, message: str, *, at_key: bool = False
     return Fault(source.file, line, column, node, message)
 
 
-def _yaml_path(data: object, location: tuple[int | str, ...]) -> tuple[YamlPath, tuple[Any, ...]]:
+def _yaml_path(
+    data: object, location: tuple[int | str, ...], nodes: Container[YamlPath]
+) -> tuple[YamlPath, tuple[Any, ...]]:
     """Return the path in the file that pydantic's location means, and what is left of it.
 
-    Pydantic names the kind of a node before its keys. For leaves no such level exists in the
-    file, and `children` is not written where a list stands for it.
+    Pydantic does not name the kind of a block, under which its keys stand in the file, and
+    `children` is not written where a list stands for it.
     """
     path: YamlPath = ()
-    is_kind = False
     for i, step in enumerate(location):
+        path = _into_block(data, path, nodes)
         here = value_at(data, path)
-        if is_kind and step in LEAVES:
-            is_kind = False
-            continue
         if isinstance(here, list) and step == "children":
             continue
         exists = step in here if isinstance(here, dict) else isinstance(step, int)
         if not exists:
             return path, location[i:]
-        is_kind = _before_node(location, i)
         path = (*path, step)
-    return path, ()
+    return _into_block(data, path, nodes), ()
 
 
-def _before_node(location: tuple[int | str, ...], i: int) -> bool:
-    """Return whether the step at `i` leads to a node, so that the next one is its kind."""
-    if location[i] == "root":
-        return i == 0
-    if location[i - 1] == "cases":
-        return i > 1 and location[i - 2] in BLOCKS
-    if location[i] in ("child", "default"):
-        return location[i - 1] in BLOCKS
-    return isinstance(location[i], int) and location[i - 1] == "children"
+def _into_block(data: object, path: YamlPath, nodes: Container[YamlPath]) -> YamlPath:
+    """Return where the keys of a node stand: under its kind if it is a block."""
+    kind = kind_of(value_at(data, path)) if path in nodes else None
+    return (*path, kind) if kind in BLOCKS else path
 
 
-def _known_keys(document: type[Document], location: tuple[int | str, ...]) -> list[str]:
-    """Return the keys that the mapping at a location may have."""
+def _known_keys(
+    document: type[Document], data: object, path: YamlPath, nodes: Container[YamlPath]
+) -> list[str]:
+    """Return the keys that the mapping around an unknown key may have."""
     model: type[Model] = document
-    for i, step in enumerate(location[:-1]):
-        if i and _before_node(location, i - 1):
-            model = {**LEAVES, **BLOCKS}[str(step)]
-        elif i == 0 and step in ("in", "out"):
-            model = InPort if step == "in" else OutPort
+    if len(path) == 3 and path[0] in ("in", "out"):
+        model = InPort if path[0] == "in" else OutPort
+    for length in range(1, len(path)):
+        if path[:length] in nodes and (kind := kind_of(value_at(data, path[:length]))):
+            model = {**LEAVES, **BLOCKS}[kind]
     return [field.alias or name for name, field in model.model_fields.items()]
