@@ -10,7 +10,8 @@ import typer
 from rich.console import Console
 from rich.text import Text
 
-from executive.cli.console import results
+from executive.cli.console import chatter, results
+from executive.cli.inspect_page import serve_page
 from executive.core.errors import InputError, RecordingError
 from executive.engine.recording.reader import Recording
 from executive.inspector.changes import Change, matching_nodes, status_changes
@@ -35,11 +36,27 @@ def inspect(
     plain: Annotated[
         bool, typer.Option("--plain", help="Print and return: no stepping, no colours.")
     ] = False,
+    web: Annotated[
+        bool,
+        typer.Option("--web", help="Serve a page for the browser; live while the run goes on."),
+    ] = False,
+    host: Annotated[
+        str, typer.Option(help="Address of the page; others than this machine's need its token.")
+    ] = "127.0.0.1",
+    port: Annotated[
+        int, typer.Option(min=0, max=65535, help="Port of the page; a free one by default.")
+    ] = 0,
+    open_browser: Annotated[
+        bool, typer.Option("--open/--no-open", help="Open the page in a browser.")
+    ] = True,
 ) -> None:
     """Show what a run did: its outcome, and the tree at a tick with every status and reason.
 
     On a terminal, keys step through the ticks.
     """
+    if web:
+        serve_page(recording, chatter(), host=host, port=port, open_browser=open_browser)
+        return
     run = _opened(recording)
     nodes = matching_nodes(run.header.nodes, node)
     console = results(colour=not plain)

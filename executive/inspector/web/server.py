@@ -51,6 +51,7 @@ def application(
         Route("/api/ask", answers.ask),
         Route("/api/who", answers.who),
         Route("/api/history", answers.history),
+        Route("/api/report", answers.report),
         Route("/api/find", answers.find),
         Route("/api/image/{number:int}.png", answers.image),
         Route("/api/command", answers.command, methods=["POST"]),
@@ -108,6 +109,9 @@ class _Answers:
     async def history(self, request: Request) -> Response:
         key = request.query_params.get("key", "")
         return _json(await run_in_threadpool(self._session.history, key))
+
+    async def report(self, _: Request) -> Response:
+        return _json({"html": await run_in_threadpool(self._session.report)})
 
     async def find(self, request: Request) -> Response:
         asked = request.query_params

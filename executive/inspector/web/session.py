@@ -7,6 +7,8 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
+from markdown_it import MarkdownIt
+
 from executive.core.errors import InputError
 from executive.core.registry import closest
 from executive.engine.recording.reader import KeyState, Recording
@@ -16,6 +18,8 @@ from executive.inspector.brief import brief
 from executive.inspector.overlays import picture_of
 from executive.inspector.past import PastRun
 from executive.inspector.provenance import who_wrote
+from executive.inspector.report import mission_report
+from executive.inspector.report_text import report_markdown
 from executive.inspector.web.activity import Activity, Codes
 from executive.inspector.web.finding import Wish, found
 from executive.inspector.why import why, why_ended
@@ -184,6 +188,11 @@ class Session:
         if written is None:
             raise InputError(f"{key!r} has no value at tick {tick}")
         return written_document(run, written)
+
+    def report(self) -> str:
+        """Return what the run came to so far, as HTML."""
+        text = report_markdown(mission_report(self.past()))
+        return MarkdownIt("js-default").render(text)  # which lets no HTML of values through
 
     def past(self) -> PastRun:
         """Return the run as questions need it, as far as the recording has been read."""

@@ -110,6 +110,12 @@ def test_a_failure_is_explained_and_a_value_has_its_writer(client):
     assert who["tick"] <= 300
 
 
+def test_the_report_is_a_page_without_foreign_markup(client):
+    html = client.get("/api/report").json()["html"]
+    assert "<table>" in html
+    assert "<script" not in html
+
+
 @pytest.mark.parametrize(
     ("address", "message"),
     [

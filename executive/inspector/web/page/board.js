@@ -1,6 +1,6 @@
 // The blackboard after a tick: what each key holds, who wrote it and when.
 
-import { getWho } from "./api.js";
+import { getHistory, getWho } from "./api.js";
 import { change, onChange, store } from "./store.js";
 
 const states = document.getElementById("states");
@@ -23,8 +23,12 @@ function drawStates() {
     const line = document.createElement("tr");
     line.classList.toggle("fresh", row.fresh);
     line.classList.toggle("selected", row.key === store.key);
+    const [scope, name] = tail(row.key).split(":");
+    const first = line.insertCell();
+    first.title = row.key;
+    first.append(name, " ", quiet(scope));
     for (const [text, title] of [
-      [tail(row.key), row.key], [row.value, row.value],
+      [row.value, row.value],
       [row.writer ? tail(row.writer) : "input", row.writer], [row.tick, `written at tick ${row.tick}`],
     ]) {
       const cell = line.insertCell();
@@ -44,23 +48,47 @@ async function drawValue() {
   if (!store.key) return;
   const [key, tick] = [store.key, store.tick];
   try {
-    const found = await getWho(key, tick);
+    const [found, history] = await Promise.all([getWho(key, tick), getHistory(key)]);
     if (key !== store.key || tick !== store.tick) return;
-    const by = (write) => `${write.writer ? tail(write.writer) : "an input of the mission"}, tick ${write.tick}`;
+    const by = (write) => `${write.writer ? tail(write.writer) : "an input of the mission"} @${write.tick}`;
+    const place = history.writes.findIndex((write) => write.tick === found.tick);
+    const before = history.writes[place - 1];
     const readers = found.readers.filter((reader) => reader.ticks.length);
     const lines = [
       key,
-      `written by ${by(found)}; kept until ${found.until_tick ?? "the end"}`,
-      found.previous ? `before: ${JSON.stringify(found.previous.value)?.slice(0, 200)} by ${by(found.previous)}` : "it had no value before",
+      `written by ${by(found)}, kept until ${found.until_tick === null ? "the end" : `@${found.until_tick}`}`,
+      before ? `before: ${before.value}  by ${by(before)}` : "it had no value before",
       readers.length
         ? `read by ${readers.map((reader) => `${tail(reader.path)} @${reader.ticks.slice(0, 4).join(" @")}`).join(", ")}`
         : "nothing has read it since",
-      JSON.stringify(found.value, null, 1),
     ];
-    value.textContent = lines.join("\n");
+    value.replaceChildren(`${lines.join("\n")}\n`, ...ticksOf(history.writes, place),
+      `\n\n${JSON.stringify(found.value, null, 1)}`);
   } catch (error) {
     value.textContent = error.message;
   }
+}
+
+// The ticks in which the key was written, near the one that counts; each leads there.
+function ticksOf(writes, place) {
+  const near = writes.slice(Math.max(0, place - 5), place + 6);
+  const links = near.map((write) => {
+    const link = document.createElement("a");
+    link.href = "#";
+    link.textContent = `@${write.tick}`;
+    link.title = write.value;
+    if (write === writes[place]) link.className = "here";
+    link.onclick = (event) => { event.preventDefault(); change({ tick: write.tick, following: false }); };
+    return link;
+  });
+  return [`${writes.length} writes: `, ...links.flatMap((link) => [link, " "])];
+}
+
+function quiet(text) {
+  const element = document.createElement("span");
+  element.className = "quiet";
+  element.textContent = text;
+  return element;
 }
 
 export function tail(path) {
