@@ -3,7 +3,9 @@
 from collections.abc import Mapping
 
 import numpy as np
+from pydantic import JsonValue
 
+from executive.core.errors import InputError
 from robots.interfaces import (
     ARMS,
     Arm,
@@ -123,6 +125,18 @@ class PlannedDualArm:
     def stop(self) -> None:
         """Bring both arms to rest within their jerk limits."""
         self._driver.stop()
+
+    def memento(self) -> JsonValue:
+        """Return what planning remembers: how many plans there have been."""
+        return {"plans": self._planner.requests}
+
+    def recall(self, memento: JsonValue) -> None:
+        """Plan as the arms went on to plan from which the memento is."""
+        match memento:
+            case {"plans": int(plans)}:
+                self._planner.requests = plans
+            case _:
+                raise InputError(f"arms: got memento {memento!r}; expected the number of plans")
 
     def _note_state(self) -> Floats:
         state = self._driver.state()

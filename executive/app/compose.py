@@ -4,18 +4,23 @@ The heavy imports of the project meet here and nowhere else.
 """
 
 from collections.abc import Iterable, Mapping
+from typing import Protocol
 
 import numpy as np
 
 from executive.core.clock import Clock
 from executive.core.errors import InputError
 from executive.core.registry import closest
-from executive.core.world import Cell, StreamMessage
+from executive.core.world import Cell, RestorableCell, StreamMessage
 from executive.engine.document import CellDocument
 from perception.cable.interfaces import CableVision
 
 # Arms in the ready pose reach this far into the overhead image.
 ROWS_OF_ARMS_AT_HOME = 58
+
+
+class _RestorableWorld(Cell, RestorableCell, Protocol):
+    """A world that is both."""
 
 
 class _EquippedCell:
@@ -43,6 +48,20 @@ class _EquippedCell:
 
     def truth(self) -> object | None:
         return self._world.truth()
+
+
+class _RestorableEquippedCell(_EquippedCell):
+    """One whose world can be put back into a state that it was in."""
+
+    def __init__(self, world: _RestorableWorld, services: Mapping[str, object]) -> None:
+        super().__init__(world, services)
+        self._restorable: RestorableCell = world
+
+    def snapshot(self) -> bytes:
+        return self._restorable.snapshot()
+
+    def restore(self, snapshot: bytes) -> None:
+        self._restorable.restore(snapshot)
 
 
 def open_cell(document: CellDocument, scenario: Mapping[str, object], seed: int) -> Cell:
@@ -74,7 +93,7 @@ def _open_table_cell(
         "vision": cable_vision(hidden_rows=ROWS_OF_ARMS_AT_HOME),
         "rng": np.random.default_rng(seed),
     }
-    return _EquippedCell(world, services)
+    return _RestorableEquippedCell(world, services)
 
 
 def _open_dry_cell(

@@ -43,7 +43,11 @@ class PlannerSettings:
 
 
 class MotionPlanner:
-    """Plans motions of all arms of a robot among static boxes."""
+    """Plans motions of all arms of a robot among static boxes.
+
+    Attributes:
+        requests: How many free motions have been planned; each has randomness of its own.
+    """
 
     def __init__(
         self,
@@ -67,7 +71,7 @@ class MotionPlanner:
         self.settings = settings or PlannerSettings()
         self.limits = robot.limits.slowed(self.settings.speed_scale)
         self._seed = seed
-        self._requests = 0
+        self.requests = 0
 
     def observe(self, positions_rad: Floats, openings_m: Mapping[Arm, float]) -> None:
         """Take note of where the arms stand and how far grippers are open, for what follows.
@@ -133,8 +137,8 @@ class MotionPlanner:
     def _to_any(
         self, start: Floats, ends: Sequence[Floats], arms: Sequence[Arm]
     ) -> Trajectory | MotionFailure:
-        rng = np.random.default_rng([self._seed, self._requests])
-        self._requests += 1
+        rng = np.random.default_rng([self._seed, self.requests])
+        self.requests += 1
         moving = np.concatenate([np.r_[self.robot.joints_of(arm)] for arm in arms])
         space = self._space(start, moving)
         failure: MotionFailure | None = None

@@ -29,7 +29,7 @@ from executive.engine.ticks import NodeOutcome
 Decode = Callable[[Any], object]
 
 
-def restore_cell(info: CheckpointInfo, cell: Cell, *, as_it_stands: bool) -> None:
+def restore_cell(info: CheckpointInfo, cell: Cell, *, as_it_stands: bool) -> bool:
     """Put a cell and its devices back, or take the cell as it stands.
 
     Args:
@@ -38,12 +38,16 @@ def restore_cell(info: CheckpointInfo, cell: Cell, *, as_it_stands: bool) -> Non
         as_it_stands: Whether somebody vouches for a cell that cannot be put back: that nothing
             is held and nothing moves, as it was then.
 
+    Returns:
+        Whether it was put back.
+
     Raises:
         InputError: It cannot be put back.
     """
-    snapshot = info.message.cell
+    snapshot, put_back = info.message.cell, False
     if snapshot is not None and isinstance(cell, RestorableCell):
         cell.restore(base64.b64decode(snapshot))
+        put_back = True
     elif not as_it_stands:
         raise InputError(
             f"{info}: the cell cannot be put back into the state of then; try --as-it-stands "
@@ -52,6 +56,7 @@ def restore_cell(info: CheckpointInfo, cell: Cell, *, as_it_stands: bool) -> Non
         )
     for name, memento in info.message.devices.items():
         _restore_device(name, cell.devices.get(name), memento)
+    return put_back
 
 
 def restore_tree(
