@@ -5,7 +5,8 @@ anew in every tick and halt the branch that is no longer the one.
 """
 
 from abc import abstractmethod
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from typing import ClassVar
 
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
@@ -23,9 +24,13 @@ class Chooser(Composite):
     Attributes:
         status: Answer of the last tick.
         outcome: Why it failed by itself, None where a branch decided.
+        picked: Whether a branch was picked in this activation, be it none.
+        branch: Index of the branch; None where there is none.
     """
 
-    MEMORY = ("_picked", "_branch")
+    ASKS: ClassVar = False
+    """Whether the first child is asked before a branch is picked."""
+    MEMORY: ClassVar = ("picked", "branch")
 
     status: Status
 
@@ -33,81 +38,69 @@ class Chooser(Composite):
         """Pick among children, once or in every tick."""
         super().__init__(name, list(children))
         self.outcome: Outcome | None = None
-        self._memory, self._picked = memory, False
-        self._branch: int | None = None
+        self.picked = False
+        self.branch: int | None = None
+        self._memory = memory
 
     def tick(self) -> Iterator[Behaviour]:
         """Pick, and tick what was picked."""
         if self.status is not Status.RUNNING:
             self.begin()
-            self._stop_all_but(())
-        if not (self._memory and self._picked):
-            condition = self.condition()
-            if condition is not None:
-                yield from condition.tick()
-            self.decide()
-            self._stop_all_but((condition, self.branch()))
-        branch = self.branch()
-        if branch is not None:
-            yield from branch.tick()
-        self.finish(self.answer())
+            self._stop(range(len(self.children)))
+        if self.picks():
+            if self.ASKS:
+                yield from self.children[0].tick()
+            self._stop(self.decide())
+        if self.branch is not None:
+            yield from self.children[self.branch].tick()
+        status = self.answer()
+        if status is Status.RUNNING:
+            self.status = status
+        else:
+            self.stop(status)
         yield self
 
     def begin(self) -> None:
         """Forget what was picked."""
-        self.outcome, self._picked, self._branch = None, False, None
+        self.outcome, self.picked, self.branch = None, False, None
 
-    def condition(self) -> Behaviour | None:
-        """Return the child that is asked before a branch is picked, if there is one."""
-        return None
+    def picks(self) -> bool:
+        """Return whether a branch is to be picked in this tick."""
+        return not (self._memory and self.picked)
 
     @abstractmethod
     def pick(self) -> int | None:
         """Return the index of the branch; None where there is none for what was found."""
 
-    def branch(self) -> Behaviour | None:
-        """Return the branch that was picked."""
-        return None if self._branch is None else self.children[self._branch]
-
-    def decide(self) -> None:
-        """Pick a branch, unless the condition still runs."""
-        condition = self.condition()
-        runs = condition is not None and condition.status is Status.RUNNING
-        self._picked = not runs
-        self._branch = None if runs else self.pick()
+    def decide(self) -> list[int]:
+        """Pick a branch, unless the first child still runs; return which children that ends."""
+        runs = self.ASKS and self.children[0].status is Status.RUNNING
+        self.picked = not runs
+        self.branch = None if runs else self.pick()
+        kept = (0, self.branch) if self.ASKS else (self.branch,)
+        return [i for i in range(len(self.children)) if i not in kept]
 
     def answer(self) -> Status:
         """Return the answer of a tick in which the branch had its turn."""
-        if not self._picked:
+        self.current_child = self.children[self.branch or 0]
+        if not self.picked:
             return Status.RUNNING
-        branch = self.branch()
-        if branch is None:
+        if self.branch is None:
             return Status.FAILURE
         self.outcome = None
-        status: Status = branch.status
+        status: Status = self.children[self.branch].status
         return status
 
-    def finish(self, status: Status) -> None:
-        """Take the answer."""
-        if status is Status.RUNNING:
-            self.status = status
-        else:
-            self.stop(status)
-        self.current_child = self.children[self._branch or 0]
-
-    def _stop_all_but(self, kept: Sequence[Behaviour | None]) -> None:
-        for child in self.children:
-            if child not in kept and child.status is not Status.INVALID:
-                child.stop(Status.INVALID)
+    def _stop(self, indices: Iterable[int]) -> None:
+        for i in indices:
+            if self.children[i].status is not Status.INVALID:
+                self.children[i].stop(Status.INVALID)
 
 
 class IfThenElse(Chooser):
     """The second child where the first succeeds, the third where it fails."""
 
-    def condition(self) -> Behaviour:
-        """Return the first child."""
-        first: Behaviour = self.children[0]
-        return first
+    ASKS: ClassVar = True
 
     def pick(self) -> int | None:
         """Return the branch; without a third child, a condition that fails is a failure."""

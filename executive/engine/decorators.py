@@ -219,9 +219,11 @@ class WhileRunning(Gated):
         """Answer `says` while the child runs."""
         super().__init__(name, child)
         self._says = says
+        self._reached = False
 
     def update(self) -> Status:
         """Return the answer of the child, or the one for a child that runs."""
+        self._reached = True
         status: Status = self.decorated.status
         return self._says if status is Status.RUNNING else status
 
@@ -232,6 +234,11 @@ class WhileRunning(Gated):
             return
         self.terminate(new_status)
         self.status = new_status
+
+    def is_left(self) -> bool:
+        """Return whether its child runs though the tick that ends now has not reached it."""
+        reached, self._reached = self._reached, False
+        return not reached and bool(self.decorated.status is Status.RUNNING)
 
 
 class ForEach(Gated):

@@ -154,6 +154,12 @@ def stop_of_decorator(spot: Spot) -> StopCall:
     return stop
 
 
+def stop_of_while_running(spot: Spot) -> StopCall:
+    """Stop a decorator, and its child only when it is halted."""
+    halt, itself = stop_of_decorator(spot), stop_of_leaf(spot)
+    return lambda status: halt(status) if status is INVALID else itself(status)
+
+
 def tick_of_leaf(spot: Spot) -> TickCall:
     """Tick a node by its `initialise` and `update` alone."""
     node, stop, log, note = spot.node, spot.stop, spot.log, spot.log.events.append
@@ -325,6 +331,31 @@ def tick_of_parallel(spot: Spot) -> TickCall:
                 for child, stop_child in children:
                     if child.status is RUNNING:
                         stop_child(INVALID)
+        except BaseException:
+            log.note_raised(node, terminating=False)
+            raise
+        return finish(status)
+
+    return tick
+
+
+def tick_of_chooser(spot: Spot) -> TickCall:
+    """Let the node pick a branch, stop the others and tick it."""
+    node, log, finish = spot.node, spot.log, _finish(spot)
+    children, ticks = spot.children, tuple(spot.ticks)
+
+    def tick() -> Status:
+        try:
+            if node.status is not RUNNING:
+                node.begin()
+                _forget(children)
+            if node.picks():
+                if node.ASKS:
+                    ticks[0]()
+                _forget([children[i] for i in node.decide()])
+            if node.branch is not None:
+                ticks[node.branch]()
+            status = node.answer()
         except BaseException:
             log.note_raised(node, terminating=False)
             raise

@@ -17,7 +17,8 @@ from py_trees.composites import Sequence as SequenceNode
 from py_trees.decorators import Decorator, OneShot
 
 from executive.engine import direct
-from executive.engine.decorators import Gated
+from executive.engine.choosing import Chooser
+from executive.engine.decorators import Gated, WhileRunning
 from executive.engine.direct import Spot, StopCall, TickCall, TickLog
 from executive.engine.interception import Interceptor, Junction
 from executive.engine.parallel import Parallel
@@ -33,6 +34,7 @@ _TICKS: Mapping[object, Callable[[Spot], TickCall]] = {
     SequenceNode.tick: direct.tick_of_sequence,
     Selector.tick: direct.tick_of_selector,
     Parallel.tick: direct.tick_of_parallel,
+    Chooser.tick: direct.tick_of_chooser,
 }
 _STOPS: Mapping[object, Callable[[Spot], StopCall]] = {
     Behaviour.stop: direct.stop_of_leaf,
@@ -40,6 +42,7 @@ _STOPS: Mapping[object, Callable[[Spot], StopCall]] = {
     Composite.stop: direct.stop_of_composite,
     SequenceNode.stop: direct.stop_of_composite,
     Selector.stop: direct.stop_of_composite,
+    WhileRunning.stop: direct.stop_of_while_running,
 }
 
 
@@ -71,6 +74,7 @@ class DirectTicks:
         for node in root.iterate():  # children come first
             self._add(node)
         self._root_tick = self._ticks[id(root)]
+        self._while_running = [node for node in root.iterate() if isinstance(node, WhileRunning)]
         self._all_known = len(self._ticks) == len(nodes)
 
     def tick(self) -> None:
@@ -78,6 +82,9 @@ class DirectTicks:
         self.log.clear()
         try:
             self._root_tick()
+            for node in self._while_running:
+                if node.is_left():
+                    self._stops[id(node)](Status.INVALID)
         finally:
             if not self._all_known:
                 self.log.events[:] = [event for event in self.log.events if event[0] >= 0]

@@ -24,6 +24,7 @@ from py_trees.decorators import Retry as ForeignRetry
 
 from executive.core.clock import ManualClock
 from executive.engine.blackboard import Blackboard
+from executive.engine.choosing import IfThenElse
 from executive.engine.decorators import Cooldown, Gated, Repeat, Retry, Timeout
 from executive.engine.parallel import Parallel
 from executive.engine.probe import TreeProbe
@@ -133,6 +134,8 @@ COMPOSITES = {
     "foreign_parallel": lambda name, children, _: ForeignParallel(
         name, ParallelPolicy.SuccessOnOne(), children
     ),
+    "choose_once": lambda name, children, _: IfThenElse(name, children, memory=True),
+    "choose": lambda name, children, _: IfThenElse(name, children, memory=False),
     "fussy": lambda name, children, _: Fussy(name, True, children),
 }
 DECORATORS = {

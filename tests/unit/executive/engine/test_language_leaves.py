@@ -6,6 +6,7 @@ from toy_language import Journal
 from executive.core.clock import ManualClock
 from executive.engine.builder import build
 from executive.engine.counts import NodeCounts
+from executive.engine.probe import TreeProbe
 from executive.engine.ticks import NodeStatus
 
 
@@ -184,3 +185,44 @@ def test_on_start_is_not_set_when_a_guard_refuses(bench):
 
 def test_keys_of_on_start_can_be_read_inside(bench):
     assert bench.faults("sequence: {on_start: {n: 1}, children: [{when: n > 0}]}") == []
+
+
+def ticked(tree, count):
+    """Tick a tree as a run does, and return what the skills noted after each tick."""
+    probe = TreeProbe(tree)
+    for number in range(count):
+        _, error = probe.tick(number, 0.1 * number)
+        assert error is None
+        yield probe
+
+
+def test_a_child_that_is_answered_for_is_halted_by_the_first_tick_that_leaves_it(bench):
+    tree = bench.build(
+        """
+        reactive_selector:
+          - {when: go}
+          - running_is_failure: {child: {skill: work, in: {label: a, ticks: 9}}}
+          - {wait: forever}
+        """,
+        "in: {go: {type: bool}}",
+        go=False,
+    )
+    ticks = ticked(tree, 4)
+    next(ticks)
+    next(ticks)
+    assert bench.journal.lines == ["a starts"]
+    tree.scope.write("go", True, "test")
+    next(ticks)
+    assert bench.journal.lines == ["a starts", "a stops"]
+    tree.scope.write("go", False, "test")
+    next(ticks)
+    assert bench.journal.lines == ["a starts", "a stops", "a starts"]
+
+
+def test_a_sequence_that_went_on_halts_what_was_answered_for(bench):
+    tree = bench.build(
+        "sequence: [{running_is_success: {child: {skill: work, in: {label: a, ticks: 9}}}}, "
+        "{wait: forever}]"
+    )
+    list(ticked(tree, 3))
+    assert bench.journal.lines == ["a starts", "a stops"]
