@@ -104,12 +104,11 @@ def main() -> None:
     """Run the command line; bad input exits with 2, any other trouble of ours with 3."""
     try:
         app()
-    except InputError as error:
-        print_error(chatter(), str(error))
-        sys.exit(2)
     except CellwrightError as error:
+        from executive.cli.console import chatter, print_error
+
         print_error(chatter(), str(error))
-        sys.exit(3)
+        sys.exit(2 if isinstance(error, InputError) else 3)
     except Exception:  # a bug of ours: say all, and keep 1 for missions that failed
         traceback.print_exc()
         sys.exit(3)
