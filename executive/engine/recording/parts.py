@@ -8,7 +8,7 @@ several times smaller and quick to seek in; until that is complete, the first fi
 
 import json
 from collections.abc import Callable, Iterator
-from contextlib import suppress
+from contextlib import closing, suppress
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -78,10 +78,14 @@ class McapFile:
         """Hand everything to the operating system."""
         self._mcap.flush()
 
-    def close(self) -> None:
+    def finish(self) -> None:
         """Write what belongs at the end, and close the file."""
         with self._file:
             self._mcap.finish()
+
+    def close(self) -> None:
+        """Close the file as it is."""
+        self._file.close()
 
     @property
     def closed(self) -> bool:
@@ -133,14 +137,14 @@ class Parts:
         """Begin a new part if this one is full; return whether that was so."""
         if self._part.bytes < self._limit:
             return False
-        self._part.close()
+        self._part.finish()
         self._closed.append(self._part.path)
         self._part = self._begin(part_path(self._path, len(self._closed) + 1))
         return True
 
     def close(self) -> None:
         """Close the last part, and give all parts their index."""
-        self._part.close()
+        self._part.finish()
         for path in (*self._closed, self._part.path):
             compact(path)
 
@@ -176,19 +180,23 @@ def compact(path: Path) -> None:
     """
     packed_path = path.with_name(f"{path.name}.packing")
     try:
-        packed = McapFile(packed_path, indexed=True)
-        for item in _items(path):
+        _pack(path, packed_path)
+        packed_path.replace(path)
+    except OSError:
+        with suppress(OSError):
+            packed_path.unlink(missing_ok=True)
+
+
+def _pack(source: Path, target: Path) -> None:
+    with closing(McapFile(target, indexed=True)) as packed:
+        for item in _items(source):
             # In chunks of their own, so that a reader of ticks need not unpack them.
             if item.topic in _ALONE:
                 packed.flush()
             packed.add(item)
             if item.topic in _ALONE:
                 packed.flush()
-        packed.close()
-        packed_path.replace(path)
-    except OSError:
-        with suppress(OSError):
-            packed_path.unlink(missing_ok=True)
+        packed.finish()
 
 
 def _items(path: Path) -> Iterator[Item]:
