@@ -5,6 +5,7 @@ for what `run` needs. None of them loads a simulator, a planner or a network bef
 """
 
 import keyword
+import os
 import sys
 import traceback
 from collections.abc import Mapping
