@@ -75,7 +75,7 @@ def _rows(text: str, nodes: Sequence[NodeCover]) -> Iterator[str]:
         count = f"{started} x" if here else ""
         yield (
             f'<tr class="{_shade(here)}"><td class="n">{number}</td><td class="c">{count}</td>'
-            f'<td>{escape(line)}</td><td class="m">{escape(_missing(here))}</td></tr>'
+            f'<td>{escape(line)}</td><td class="m">{_missing(here)}</td></tr>'
         )
 
 
@@ -90,4 +90,5 @@ def _shade(nodes: Sequence[NodeCover]) -> str:
 def _missing(nodes: Sequence[NodeCover]) -> str:
     texts = [(node.path, missing_text(node)) for node in nodes if node.missing]
     several = len(nodes) > 1
-    return "; ".join(f"{path}: {text}" if several else text for path, text in texts)
+    shown = (f"{path}: {text}" if several else text for path, text in texts)
+    return escape(f"not taken: {'; '.join(shown)}") if texts else ""
