@@ -1,6 +1,9 @@
 """Two arms as skills use them: `robots.interfaces.DualArm` over any driver."""
 
-from collections.abc import Mapping
+import threading
+from collections.abc import Callable, Mapping
+from functools import wraps
+from typing import Concatenate, ParamSpec, TypeVar
 
 import numpy as np
 from pydantic import JsonValue
@@ -19,6 +22,22 @@ from robots.interfaces import (
 from robots.motion.model import yumi_model
 from robots.motion.planner import MotionPlanner, PlannerSettings
 from robots.placement import HOME_RAD, PlanningScene, table_scene
+
+P = ParamSpec("P")
+T = TypeVar("T")
+
+
+def _one_at_a_time(
+    method: Callable[Concatenate["PlannedDualArm", P], T],
+) -> Callable[Concatenate["PlannedDualArm", P], T]:
+    """Let threads use the planner one after the other."""
+
+    @wraps(method)
+    def guarded(self: "PlannedDualArm", /, *args: P.args, **kwargs: P.kwargs) -> T:
+        with self._planning:
+            return method(self, *args, **kwargs)
+
+    return guarded
 
 
 class PlannedDualArm:
@@ -44,7 +63,10 @@ class PlannedDualArm:
         scene = scene or table_scene()
         self._robot = yumi_model(scene.placement)
         self._planner = MotionPlanner(self._robot, scene, HOME_RAD, seed, settings)
+        # Plans may be made in threads, and one that nobody waits for any more is still at it.
+        self._planning = threading.RLock()
 
+    @_one_at_a_time
     def plan(self, goals: Mapping[Arm, TcpGoal]) -> Trajectory | MotionFailure:
         """Plan a free motion that takes each named arm to its goal; the others stay."""
         start = self._rest()
@@ -52,6 +74,7 @@ class PlannedDualArm:
             return start
         return self._planner.to_goals(start, goals)
 
+    @_one_at_a_time
     def plan_line(self, displacements_m: Mapping[Arm, Floats]) -> Trajectory | MotionFailure:
         """Plan straight tool motions from the present poses, in step, orientation kept."""
         start = self._rest()
@@ -59,6 +82,7 @@ class PlannedDualArm:
             return start
         return self._planner.along_lines(start, displacements_m)
 
+    @_one_at_a_time
     def plan_home(self) -> Trajectory | MotionFailure:
         """Plan a motion to the ready pose, arms out of the camera's view of the table."""
         start = self._rest()
@@ -66,6 +90,7 @@ class PlannedDualArm:
             return start
         return self._planner.to_configuration(start, HOME_RAD)
 
+    @_one_at_a_time
     def assign(self, goals: tuple[TcpGoal, TcpGoal]) -> tuple[Arm, Arm] | MotionFailure:
         """Say which arm takes which of two goals so that both can be reached at once.
 
@@ -83,6 +108,7 @@ class PlannedDualArm:
             failures.append(answer)
         return failures[0]
 
+    @_one_at_a_time
     def reachable(self, arm: Arm, goal: TcpGoal) -> bool:
         """Return whether that arm alone could reach the goal without collision."""
         present = self._note_state()

@@ -4,13 +4,15 @@ The heavy imports of the project meet here and nowhere else.
 """
 
 from collections.abc import Iterable, Mapping
-from typing import Protocol
+from typing import Literal, Protocol
 
 import numpy as np
 
 from executive.core.clock import Clock
 from executive.core.errors import InputError
+from executive.core.process_work import ProcessWorker
 from executive.core.registry import closest
+from executive.core.work import InlineWorker, ThreadWorker, Worker
 from executive.core.world import Cell, RestorableCell, StreamMessage
 from executive.engine.document import CellDocument
 from perception.cable.interfaces import CableVision
@@ -44,6 +46,9 @@ class _EquippedCell:
         self._world.emergency_stop()
 
     def close(self) -> None:
+        for service in self.devices.values():
+            if isinstance(service, Worker):
+                service.close()
         self._world.close()
 
     def truth(self) -> object | None:
@@ -78,32 +83,42 @@ def open_cell(document: CellDocument, scenario: Mapping[str, object], seed: int)
     worlds = {"table_cell": _open_table_cell, "dry": _open_dry_cell}
     if document.world not in worlds:
         raise InputError(f"unknown world {document.world!r}; {closest(document.world, [*worlds])}")
-    return worlds[document.world](document.config, scenario, seed)
+    return worlds[document.world](document, scenario, seed)
 
 
-def _open_table_cell(
-    config: Mapping[str, object], scenario: Mapping[str, object], seed: int
-) -> Cell:
+def _open_table_cell(document: CellDocument, scenario: Mapping[str, object], seed: int) -> Cell:
     from robots.dual_arm import PlannedDualArm
     from simulation.table_cell import TableCell
 
-    world = TableCell(config, scenario, seed)
+    world = TableCell(document.config, scenario, seed)
     services = {
         "arms": PlannedDualArm(world.driver, seed=seed),
         "vision": cable_vision(hidden_rows=ROWS_OF_ARMS_AT_HOME),
         "rng": np.random.default_rng(seed),
+        **workers(document.work),
     }
     return _RestorableEquippedCell(world, services)
 
 
+def workers(work: Literal["inline", "beside"]) -> dict[str, Worker]:
+    """Return who does long work in a cell: `worker` for any, `processes` for what can be pickled.
+
+    Args:
+        work: What the document of the cell says.
+    """
+    if work == "inline":
+        return {"worker": InlineWorker(), "processes": InlineWorker()}
+    return {"worker": ThreadWorker(), "processes": ProcessWorker()}
+
+
 def _open_dry_cell(
-    config: Mapping[str, object],
+    document: CellDocument,
     scenario: Mapping[str, object],
     seed: int,  # noqa: ARG001 - every world takes one; nothing is random here
 ) -> Cell:
     from executive.app.dry_cell import DryCell
 
-    return DryCell(config, scenario)
+    return DryCell(document.config, scenario)
 
 
 def cable_vision(hidden_rows: int = 0) -> CableVision:

@@ -542,6 +542,11 @@ class CellDocument(Model):
     config: dict[str, Any] = Field(
         default_factory=dict, description="Configuration of the world, which checks it."
     )
+    work: Literal["inline", "beside"] = Field(
+        "inline",
+        description="Where skills have long work done: inline, in the tick that asks, so that the "
+        "same seed gives the same run; or beside the ticks, in threads and processes.",
+    )
 
     @property
     def name(self) -> str:

@@ -4,6 +4,7 @@ from typing import Annotated
 
 from executive.core.outcome import failure, success
 from executive.core.skill import In, Port, Skill, SkillRun
+from executive.core.work import Worker
 from perception.cable.interfaces import CableVision
 from perception.cable.types import Trace
 from perception.camera import CameraFrame
@@ -20,9 +21,9 @@ class AccountForCable(Skill):
     OUT = {"explained": Port(float, "share of the cable in view that the trace accounts for")}
     REASONS = frozenset({"cable.unexplained"})
 
-    def __init__(self, vision: CableVision) -> None:
-        """Bind perception."""
-        self._vision = vision
+    def __init__(self, vision: CableVision, worker: Worker) -> None:
+        """Bind perception, and who has the time for it."""
+        self._vision, self._worker = vision, worker
 
     def run(
         self,
@@ -31,8 +32,7 @@ class AccountForCable(Skill):
         share: Annotated[float, In("share that must be accounted for")] = 0.93,
     ) -> SkillRun:
         """Count cable pixels near the trace and away from it."""
-        explained = self._vision.explained_share(frame.image, trace)
-        yield
+        explained = yield from self._worker.run(self._vision.explained_share, frame.image, trace)
         if explained < share:
             text = f"the trace accounts for {explained:.0%} of the cable in view"
             return failure("cable.unexplained", text, explained=explained)

@@ -4,6 +4,7 @@ from typing import Annotated
 
 from executive.core.outcome import success
 from executive.core.skill import In, Port, Skill, SkillRun
+from executive.core.work import Worker
 from perception.cable.interfaces import CableVision
 from perception.cable.types import Crossing, Trace
 from perception.camera import CameraFrame
@@ -17,9 +18,9 @@ class ClassifyCrossings(Skill):
 
     OUT = {"crossings": Port(tuple[Crossing, ...], "crossings in the order of the trace")}
 
-    def __init__(self, vision: CableVision) -> None:
-        """Bind perception."""
-        self._vision = vision
+    def __init__(self, vision: CableVision, worker: Worker) -> None:
+        """Bind perception, and who has the time for it."""
+        self._vision, self._worker = vision, worker
 
     def run(
         self,
@@ -27,6 +28,5 @@ class ClassifyCrossings(Skill):
         trace: Annotated[Trace, In("path of the cable")],
     ) -> SkillRun:
         """Classify."""
-        crossings = self._vision.crossings(frame.image, (trace,))
-        yield
+        crossings = yield from self._worker.run(self._vision.crossings, frame.image, (trace,))
         return success(crossings=crossings)

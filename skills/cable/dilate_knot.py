@@ -1,26 +1,22 @@
 """Loosen or undo a knot: one hand cages the cable, the other pinches it, both pull apart."""
 
-from collections.abc import Generator, Mapping, Sequence
+from collections.abc import Generator, Iterable, Mapping, Sequence
 from typing import Annotated
 
 import numpy as np
 
 from executive.core.outcome import failure, success
-from executive.core.skill import In, Skill, SkillRun
+from executive.core.skill import In, SkillRun
 from perception.cable.grasp_sites import SIDE_ROOM_PX, GraspSite, cage_sites, pinch_sites
 from perception.cable.types import Crossing, Knot, Trace
 from perception.camera import CameraFrame
-from robots.interfaces import Arm, DualArm, Floats, MotionFailure, TcpGoal
+from robots.interfaces import Arm, Floats, MotionFailure, TcpGoal
 from skills.cable.grasping import CLEARANCE_M, grasp_goal
-from skills.motion.steps import (
-    MOTION_REASONS,
-    MotionSteps,
-    above,
-    descend,
-    move_by,
-    release,
-    set_grips,
-)
+from skills.motion.arm_skill import MOTION_REASONS, ArmSkill, MotionSteps
+from skills.motion.goals import above
+
+# Hands for a pair of goals, or why that pair cannot be reached.
+_Hands = tuple[Arm, Arm] | MotionFailure
 
 # Two grippers that point straight down touch each other when they are nearer than this.
 HANDS_APART_M = 0.11
@@ -35,7 +31,7 @@ SHARES_OF_TRAVEL = (1.0, 0.8, 0.6, 0.4, 0.2)
 CABLE_LENGTH_M = 3.0
 
 
-class DilateKnot(Skill):
+class DilateKnot(ArmSkill):
     """Pull a knot open with a caging and a pinching gripper (thesis, section 3.5).
 
     The cable slides through the cage, so that the loop grows and the tail is drawn out of it,
@@ -48,11 +44,6 @@ class DilateKnot(Skill):
     """
 
     REASONS = MOTION_REASONS | {"knot.none", "grasp.missed"}
-    ACTS = True
-
-    def __init__(self, arms: DualArm) -> None:
-        """Bind the arms."""
-        self._arms = arms
 
     def run(
         self,
@@ -68,10 +59,10 @@ class DilateKnot(Skill):
         hands = yield from self._reach_down(frame, trace, crossings, knots[0])
         if isinstance(hands, MotionFailure):
             return failure(hands.code, hands.text, stage=hands.stage)
-        yield from set_grips(self._arms, {hands[0]: "cage", hands[1]: "pinch"})
+        yield from self._set_grips({hands[0]: "cage", hands[1]: "pinch"})
         missed = [arm for arm in hands if not self._arms.holds(arm)]
         failed = None if missed else (yield from self._pull_apart(hands, travel_m))
-        risen = yield from release(self._arms, hands, CLEARANCE_M)
+        risen = yield from self._release(hands, CLEARANCE_M)
         if missed:
             return failure("grasp.missed", f"closed on nothing: {', '.join(missed)}")
         failed = failed or risen
@@ -79,50 +70,57 @@ class DilateKnot(Skill):
             return failure(failed.code, failed.text, stage=failed.stage)
         return success()
 
-    def stop(self) -> None:
-        """Bring the arms to rest."""
-        self._arms.stop()
-
     def _reach_down(
         self, frame: CameraFrame, trace: Trace, crossings: Sequence[Crossing], knot: Knot
-    ) -> Generator[None, None, tuple[Arm, Arm] | MotionFailure]:
+    ) -> Generator[None, None, _Hands]:
         """Put both hands around the cable at the best pair of sites that they can reach.
 
         Returns:
             The cage hand and the pinch hand, or why the last pair that was tried failed.
         """
         cages, pinches = cage_sites(trace, crossings, knot), pinch_sites(trace, crossings, knot)
-        failed = MotionFailure(
-            "motion.unreachable", "ik", "no two sites around the knot are apart and in reach"
-        )
-        for cage, pinch in ranked_pairs(cages, pinches, knot, frame)[:MOST_PAIRS]:
-            goals = (_goal(frame, cage), _goal(frame, pinch))
-            hands = self._arms.assign((above(goals[0], CLEARANCE_M), above(goals[1], CLEARANCE_M)))
-            if isinstance(hands, MotionFailure):
-                failed = hands
-                continue
-            blocked = yield from descend(
-                self._arms, dict(zip(hands, goals, strict=True)), CLEARANCE_M
-            )
+        pairs = iter(ranked_pairs(cages, pinches, knot, frame)[:MOST_PAIRS])
+        nowhere = "no two sites around the knot are apart and in reach"
+        failed = MotionFailure("motion.unreachable", "ik", nowhere)
+        while True:
+            found = yield from self._worker.run(self._next_in_reach, frame, pairs, failed)
+            if isinstance(found, MotionFailure):
+                return found
+            hands, goals = found
+            blocked = yield from self._descend(dict(zip(hands, goals, strict=True)), CLEARANCE_M)
             if blocked is None:
                 return hands
             failed = blocked
+
+    def _next_in_reach(
+        self,
+        frame: CameraFrame,
+        pairs: Iterable[tuple[GraspSite, GraspSite]],
+        failed: MotionFailure,
+    ) -> tuple[tuple[Arm, Arm], tuple[TcpGoal, TcpGoal]] | MotionFailure:
+        """Return hands and goals of the next pair that both can be above; else the last failure."""
+        for cage, pinch in pairs:
+            goals = (_goal(frame, cage), _goal(frame, pinch))
+            hands = self._arms.assign((above(goals[0], CLEARANCE_M), above(goals[1], CLEARANCE_M)))
+            if not isinstance(hands, MotionFailure):
+                return hands, goals
+            failed = hands
         return failed
 
     def _pull_apart(self, hands: tuple[Arm, Arm], travel_m: float) -> MotionSteps:
         """Lift, move apart as far as asked or as far as the arms reach, lay down."""
         up_m = np.array([0.0, 0.0, LIFT_M])
-        failed = yield from move_by(self._arms, dict.fromkeys(hands, up_m))
+        failed = yield from self._move_by(dict.fromkeys(hands, up_m))
         if failed is not None:
             return failed
         tips_m = {arm: self._arms.tcp_position(arm) for arm in hands}
         present_m = float(np.linalg.norm(tips_m["left"] - tips_m["right"]))
         for share in SHARES_OF_TRAVEL:
             span_m = min(present_m + share * travel_m, 2.0 * REACH_X_M)
-            failed = yield from move_by(self._arms, apart(tips_m, span_m))
+            failed = yield from self._move_by(apart(tips_m, span_m))
             if failed is None:
                 break
-        laid = yield from move_by(self._arms, dict.fromkeys(hands, -up_m))
+        laid = yield from self._move_by(dict.fromkeys(hands, -up_m))
         return failed or laid
 
 

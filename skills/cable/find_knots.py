@@ -4,6 +4,7 @@ from typing import Annotated
 
 from executive.core.outcome import success
 from executive.core.skill import In, Port, Skill, SkillRun
+from executive.core.work import Worker
 from perception.cable.interfaces import CableVision
 from perception.cable.types import Crossing, Knot, Trace
 from perception.camera import CameraFrame
@@ -20,9 +21,9 @@ class FindKnots(Skill):
         "knotted_probability": Port(float, "belief that the cable is knotted"),
     }
 
-    def __init__(self, vision: CableVision) -> None:
-        """Bind perception."""
-        self._vision = vision
+    def __init__(self, vision: CableVision, worker: Worker) -> None:
+        """Bind perception, and who has the time for it."""
+        self._vision, self._worker = vision, worker
 
     def run(
         self,
@@ -31,7 +32,6 @@ class FindKnots(Skill):
         crossings: Annotated[tuple[Crossing, ...], In("crossings of the trace")],
     ) -> SkillRun:
         """Simplify the diagram, find knots, carry probabilities through."""
-        knots = self._vision.knots(frame.image, (trace,), crossings)
-        yield
+        knots = yield from self._worker.run(self._vision.knots, frame.image, (trace,), crossings)
         probability = self._vision.knotted_probability((trace,), crossings)
         return success(knots=knots, knotted_probability=probability)

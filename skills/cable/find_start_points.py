@@ -4,6 +4,7 @@ from typing import Annotated
 
 from executive.core.outcome import failure, success
 from executive.core.skill import In, Port, Skill, SkillRun
+from executive.core.work import Worker
 from perception.cable.interfaces import CableVision
 from perception.cable.types import Endpoint, TraceStart
 from perception.camera import CameraFrame
@@ -19,9 +20,9 @@ class FindStartPoints(Skill):
     OUT = {"start": Port(TraceStart, "first points of the trace")}
     REASONS = frozenset({"start.unclear"})
 
-    def __init__(self, vision: CableVision) -> None:
-        """Bind perception."""
-        self._vision = vision
+    def __init__(self, vision: CableVision, worker: Worker) -> None:
+        """Bind perception, and who has the time for it."""
+        self._vision, self._worker = vision, worker
 
     def run(
         self,
@@ -30,10 +31,11 @@ class FindStartPoints(Skill):
     ) -> SkillRun:
         """Try one end a tick."""
         for endpoint in endpoints:
-            points_px = self._vision.start_points(frame.image, endpoint)
+            points_px = yield from self._worker.run(
+                self._vision.start_points, frame.image, endpoint
+            )
             if points_px is not None:
                 return success(start=TraceStart(points_px, endpoint))
-            yield
         return failure(
             "start.unclear", "no end has a clear piece of cable behind it", ends=len(endpoints)
         )

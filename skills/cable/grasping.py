@@ -7,7 +7,7 @@ import numpy as np
 from perception.cable.types import Points
 from perception.camera import CameraFrame
 from robots.interfaces import ARMS, Arm, DualArm, TcpGoal
-from skills.motion.steps import above
+from skills.motion.goals import above
 
 # Finger tips end 6 mm beyond the tool centre point: they stay 2 mm above the cloth and reach
 # past the axis of a cable of 6.6 mm diameter.

@@ -14,6 +14,7 @@ class ObserveWorkspace(Skill):
 
     OUT = {"frame": Port(CameraFrame, "what the camera sees now")}
     REASONS = frozenset({"camera.dark"})
+    CLAIMS = frozenset({"camera"})
 
     def __init__(self, camera: Camera) -> None:
         """Bind the camera."""

@@ -5,10 +5,13 @@ from typing import Annotated
 
 from executive.core.outcome import success
 from executive.core.skill import In, Port, Skill, SkillRun
+from executive.core.work import Worker
 from perception.cable.interfaces import CableVision
 from perception.cable.orientation import reversed_crossings, reversed_trace
 from perception.cable.types import Crossing, Trace
 from perception.camera import CameraFrame
+
+_Reading = tuple[Trace, Sequence[Crossing]]
 
 
 class OrientTrace(Skill):
@@ -25,9 +28,9 @@ class OrientTrace(Skill):
         "crossings": Port(tuple[Crossing, ...], "its crossings"),
     }
 
-    def __init__(self, vision: CableVision) -> None:
-        """Bind perception."""
-        self._vision = vision
+    def __init__(self, vision: CableVision, worker: Worker) -> None:
+        """Bind perception, and who has the time for it."""
+        self._vision, self._worker = vision, worker
 
     def run(
         self,
@@ -37,11 +40,14 @@ class OrientTrace(Skill):
     ) -> SkillRun:
         """Compare the tails before the first knot, read from both ends."""
         turned = reversed_trace(trace), reversed_crossings(crossings)
-        tail = self._tail(frame, trace, crossings)
-        yield
-        if self._tail(frame, *turned) < tail:
+        is_better = yield from self._worker.run(self._shorter, frame, turned, (trace, crossings))
+        if is_better:
             trace, crossings = turned
         return success(trace=trace, crossings=crossings)
+
+    def _shorter(self, frame: CameraFrame, one: _Reading, other: _Reading) -> bool:
+        """Return whether the first knot comes sooner in one reading than in the other."""
+        return self._tail(frame, *one) < self._tail(frame, *other)
 
     def _tail(self, frame: CameraFrame, trace: Trace, crossings: Sequence[Crossing]) -> float:
         """Return the share of the cable before the first knot, 1 when there is none."""

@@ -7,13 +7,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from executive.core.outcome import Outcome, failure, success
-from executive.core.skill import Skill, SkillRun
+from executive.core.skill import SkillRun
+from executive.core.work import Worker
 from perception.cable.interfaces import CableVision
 from perception.cable.types import Points
 from perception.camera import CameraFrame
 from robots.interfaces import DualArm, Floats, MotionFailure
 from skills.cable.grasping import CLEARANCE_M, first_reachable, grasp_goal
-from skills.motion.steps import MOTION_REASONS, descend, move_by, release, set_grips
+from skills.motion.arm_skill import MOTION_REASONS, ArmSkill
 
 # Thesis section 3.5: uniform displacement in a square of 10 cm x 10 cm.
 HALF_SQUARE_M = 0.05
@@ -41,47 +42,45 @@ class Hold:
     leading_px: Points
 
 
-class ShiftSkill(Skill):
+class ShiftSkill(ArmSkill):
     """Base of skills that grasp one place of the cable and shift it into free space."""
 
     REASONS = MOTION_REASONS | {"grasp.unreachable", "grasp.missed"}
-    ACTS = True
 
-    def __init__(self, arms: DualArm, vision: CableVision, rng: np.random.Generator) -> None:
-        """Bind the arms, perception and the mission's random numbers."""
-        self._arms, self._vision, self._rng = arms, vision, rng
+    def __init__(
+        self, arms: DualArm, worker: Worker, vision: CableVision, rng: np.random.Generator
+    ) -> None:
+        """Bind the arms, who plans for them, perception and the mission's random numbers."""
+        super().__init__(arms, worker)
+        self._vision, self._rng = vision, rng
 
     def shift(self, frame: CameraFrame, holds: Sequence[Hold]) -> SkillRun:
         """Grasp at the first hold that an arm reaches, lift, shift, lay down, rise."""
         goals = [grasp_goal(frame, hold.point_px, hold.direction) for hold in holds]
-        found = first_reachable(self._arms, goals)
-        yield
+        found = yield from self._worker.run(first_reachable, self._arms, goals)
         if found is None:
             return failure("grasp.unreachable", "no arm reaches the cable", holds=len(holds))
         arm, goal = found
-        failed = yield from descend(self._arms, {arm: goal}, CLEARANCE_M)
+        failed = yield from self._descend({arm: goal}, CLEARANCE_M)
         if failed is not None:
             return _outcome(failed)
-        yield from set_grips(self._arms, {arm: "pinch"})
+        yield from self._set_grips({arm: "pinch"})
         if not self._arms.holds(arm):
-            yield from release(self._arms, (arm,), CLEARANCE_M)
+            yield from self._release((arm,), CLEARANCE_M)
             return failure("grasp.missed", f"the {arm} gripper closed on nothing")
         hold = holds[goals.index(goal)]
-        room = room_map(self._vision.cable_pixels(frame.image), hold)
+        cable = yield from self._worker.run(self._vision.cable_pixels, frame.image)
+        room = room_map(cable, hold)
         lift_m = np.array([0.0, 0.0, LIFT_M])
-        failed = yield from move_by(self._arms, {arm: lift_m})
+        failed = yield from self._move_by({arm: lift_m})
         for step_m in roomiest_steps(frame, hold.leading_px, room, self._rng):
-            failed = yield from move_by(self._arms, {arm: step_m})
+            failed = yield from self._move_by({arm: step_m})
             if failed is None:
                 break
-        laid = yield from move_by(self._arms, {arm: -lift_m})
+        laid = yield from self._move_by({arm: -lift_m})
         failed = failed or laid
-        risen = yield from release(self._arms, (arm,), CLEARANCE_M)
+        risen = yield from self._release((arm,), CLEARANCE_M)
         return _outcome(failed or risen)
-
-    def stop(self) -> None:
-        """Bring the arms to rest."""
-        self._arms.stop()
 
 
 Room = Callable[[Points], float]

@@ -23,7 +23,8 @@ class StirCable(ShiftSkill):
 
     def run(self, frame: Annotated[CameraFrame, In("overhead frame")]) -> SkillRun:
         """Hold a piece and shift it."""
-        pieces = [piece for piece in self._vision.pieces(frame.image) if len(piece) > SHORTEST_PX]
+        found = yield from self._worker.run(self._vision.pieces, frame.image)
+        pieces = [piece for piece in found if len(piece) > SHORTEST_PX]
         order = self._rng.permutation(len(pieces))[:MOST_PIECES]
         holds = []
         for number in order:

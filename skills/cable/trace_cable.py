@@ -4,6 +4,7 @@ from typing import Annotated
 
 from executive.core.outcome import failure, success
 from executive.core.skill import In, Port, Skill, SkillRun
+from executive.core.work import Worker
 from perception.cable.interfaces import CableVision
 from perception.cable.types import Endpoint, Trace, TraceStart
 from perception.camera import CameraFrame
@@ -19,9 +20,9 @@ class TraceCable(Skill):
     OUT = {"trace": Port(Trace, "path of the cable")}
     REASONS = frozenset({"trace.none"})
 
-    def __init__(self, vision: CableVision) -> None:
-        """Bind perception."""
-        self._vision = vision
+    def __init__(self, vision: CableVision, worker: Worker) -> None:
+        """Bind perception, and who has the time for it."""
+        self._vision, self._worker = vision, worker
 
     def run(
         self,
@@ -30,8 +31,9 @@ class TraceCable(Skill):
         endpoints: Annotated[tuple[Endpoint, ...], In("ends where it may finish")],
     ) -> SkillRun:
         """Trace."""
-        trace = self._vision.trace(frame.image, start.points_px, endpoints)
-        yield
+        trace = yield from self._worker.run(
+            self._vision.trace, frame.image, start.points_px, endpoints
+        )
         if trace is None:
             return failure("trace.none", "there is no cable at the start point")
         return success(trace=trace)

@@ -5,10 +5,10 @@ import re
 import pytest
 
 from executive.app.catalogue import port_types, skills
-from executive.core.skill import device_types, input_ports
+from executive.core.skill import PausePolicy, Skill, device_types, input_ports
 
 EVERY = [pytest.param(skills().get(name), id=name) for name in skills()]
-DEVICES = {"arms", "camera", "clock", "driver", "rng", "vision"}
+DEVICES = {"arms", "camera", "clock", "driver", "processes", "rng", "vision", "worker"}
 
 
 @pytest.mark.parametrize("skill", EVERY)
@@ -39,6 +39,28 @@ def test_each_skill_that_moves_something_says_how_it_stops(skill):
 @pytest.mark.parametrize("skill", EVERY)
 def test_each_skill_binds_devices_that_the_cells_offer(skill):
     assert set(device_types(skill)) <= DEVICES
+
+
+# What a device is part of; whoever commands the device needs it alone.
+CLAIMED_BY_DEVICE = {
+    "arms": {"left_arm", "right_arm"},
+    "driver": {"left_arm", "right_arm"},
+    "camera": {"camera"},
+}
+
+
+@pytest.mark.parametrize("skill", EVERY)
+def test_each_skill_claims_what_it_commands(skill):
+    needed = [CLAIMED_BY_DEVICE.get(device, set()) for device in device_types(skill)]
+    assert set().union(*needed) == skill.CLAIMS
+    assert skill.CLAIMS or not skill.ACTS
+
+
+@pytest.mark.parametrize("skill", EVERY)
+def test_each_skill_that_moves_something_comes_to_rest_when_it_is_paused(skill):
+    if skill.ACTS and skill.PAUSE is PausePolicy.HOLD:
+        for method in ("on_pause", "on_resume", "resting"):
+            assert getattr(skill, method) is not getattr(Skill, method)
 
 
 def test_types_of_ports_have_names_for_yaml():

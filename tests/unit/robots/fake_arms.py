@@ -15,6 +15,7 @@ class FakeArms:
         self.positions_rad = np.array(positions_rad, dtype=float)
         self.openings_m = dict.fromkeys(ARMS, OPENINGS_M["open"])
         self.running = None
+        self.is_held = False
         self.executed = []
 
     def state(self):
@@ -40,6 +41,15 @@ class FakeArms:
 
     def holds(self, arm):
         return False
+
+    def hold(self):
+        self.is_held = self.running is not None
+
+    def go_on(self):
+        self.is_held = False
+
+    def held(self):
+        return self.is_held
 
     def stop(self):
         self.running = None

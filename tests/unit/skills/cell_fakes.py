@@ -87,6 +87,15 @@ class ArrivingArms:
     def stop(self):
         self.log.append(("stop",))
 
+    def hold(self):
+        self.log.append(("hold",))
+
+    def go_on(self):
+        self.log.append(("go on",))
+
+    def resting(self):
+        return self.busy <= 0
+
 
 def overhand(size_px: float = 60.0) -> tuple[Trace, tuple[Crossing, ...], Knot]:
     """A trefoil-like overhand knot in the middle of the view with two straight tails."""

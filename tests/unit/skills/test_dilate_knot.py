@@ -2,6 +2,7 @@ import numpy as np
 import pytest
 from cell_fakes import ArrivingArms, finished, frame, overhand
 
+from executive.core.work import InlineWorker
 from perception.cable.grasp_sites import cage_sites, pinch_sites
 from skills.cable.dilate_knot import HANDS_APART_M, REACH_X_M, DilateKnot, apart, ranked_pairs
 
@@ -13,7 +14,7 @@ def inputs(**more):
 
 def test_one_hand_cages_the_other_pinches_and_both_let_go_at_the_end():
     arms = ArrivingArms()
-    outcome, _ = finished(DilateKnot(arms), inputs())
+    outcome, _ = finished(DilateKnot(arms, InlineWorker()), inputs())
     grips = [entry[1:] for entry in arms.log if entry[0] == "grip"]
     assert outcome.status == "SUCCESS"
     assert sorted(grip for _, grip in grips[:2]) == ["cage", "pinch"]
@@ -22,7 +23,7 @@ def test_one_hand_cages_the_other_pinches_and_both_let_go_at_the_end():
 
 def test_hands_end_farther_apart_along_the_long_side_by_what_was_asked():
     arms = ArrivingArms()
-    finished(DilateKnot(arms), inputs(travel_m=0.2))
+    finished(DilateKnot(arms, InlineWorker()), inputs(travel_m=0.2))
     moves = [entry[1] for entry in arms.log if entry[0] == "move"]
     gaps = [np.linalg.norm(np.subtract(tools["left"], tools["right"])) for tools in moves]
     assert gaps[3] - gaps[2] == pytest.approx(0.2, abs=0.002)  # hover, down, lift, then apart
@@ -31,7 +32,7 @@ def test_hands_end_farther_apart_along_the_long_side_by_what_was_asked():
 
 def test_a_blocked_way_apart_is_tried_shorter():
     arms = ArrivingArms()
-    skill = DilateKnot(arms)
+    skill = DilateKnot(arms, InlineWorker())
     skill.start(inputs())
     while not any(entry[0] == "grip" for entry in arms.log):
         skill.step()
@@ -45,20 +46,20 @@ def test_a_blocked_way_apart_is_tried_shorter():
 
 def test_closing_on_nothing_is_a_miss_and_lets_go():
     arms = ArrivingArms(held=False)
-    outcome, _ = finished(DilateKnot(arms), inputs())
+    outcome, _ = finished(DilateKnot(arms, InlineWorker()), inputs())
     assert outcome.reason.code == "grasp.missed"
     assert arms.log[-2][0] == "grip" or arms.log[-1][0] == "move"
 
 
 def test_no_knot_is_a_reason_of_its_own_and_moves_nothing():
     arms = ArrivingArms()
-    outcome, _ = finished(DilateKnot(arms), inputs() | {"knots": ()})
+    outcome, _ = finished(DilateKnot(arms, InlineWorker()), inputs() | {"knots": ()})
     assert (outcome.reason.code, arms.log) == ("knot.none", [])
 
 
 def test_halting_stops_the_arms():
     arms = ArrivingArms()
-    skill = DilateKnot(arms)
+    skill = DilateKnot(arms, InlineWorker())
     skill.start(inputs())
     skill.step()
     skill.halt()

@@ -2,6 +2,7 @@ import numpy as np
 import pytest
 from cell_fakes import finished, frame, overhand
 
+from executive.core.work import InlineWorker
 from perception.cable.orientation import reversed_crossings, reversed_trace
 from perception.cable.types import Knot
 from skills.cable.account_for_cable import AccountForCable
@@ -39,7 +40,7 @@ class DarkCamera:
 
 def test_a_trace_is_turned_to_the_end_that_is_nearer_to_its_knot():
     trace, crossings, _ = overhand()
-    skill = OrientTrace(KnotNearTheEnd(trace))
+    skill = OrientTrace(KnotNearTheEnd(trace), InlineWorker())
     outcome, _ = finished(skill, {"frame": frame(), "trace": trace, "crossings": crossings})
     assert np.allclose(outcome.outputs["trace"].points_px, trace.points_px[::-1])
     assert outcome.outputs["crossings"][0].arc_over == pytest.approx(1 - crossings[0].arc_over)
@@ -54,7 +55,7 @@ def test_turning_round_twice_changes_nothing():
 
 def test_cable_that_is_left_over_forbids_a_claim():
     trace, _, _ = overhand()
-    skill = AccountForCable(KnotNearTheEnd(trace))
+    skill = AccountForCable(KnotNearTheEnd(trace), InlineWorker())
     outcome, _ = finished(skill, {"frame": frame(), "trace": trace})
     assert outcome.reason.code == "cable.unexplained"
 
@@ -67,7 +68,9 @@ def test_untangled_is_claimed_only_above_the_confidence(knotted, untangled):
 
 def test_no_end_and_no_light_have_reasons():
     trace, _, _ = overhand()
-    outcome, _ = finished(DetectEndpoints(KnotNearTheEnd(trace)), {"frame": frame()})
+    outcome, _ = finished(
+        DetectEndpoints(KnotNearTheEnd(trace), InlineWorker()), {"frame": frame()}
+    )
     assert outcome.reason.code == "endpoints.none"
     outcome, _ = finished(ObserveWorkspace(DarkCamera()), {})
     assert outcome.reason.code == "camera.dark"

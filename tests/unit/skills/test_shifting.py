@@ -1,6 +1,7 @@
 import numpy as np
 from cell_fakes import ArrivingArms, finished, frame, overhand
 
+from executive.core.work import InlineWorker
 from perception.cable.types import Endpoint
 from skills.cable.perturb_endpoint import PerturbEndpoint
 from skills.cable.pull_in import PullIn
@@ -23,7 +24,7 @@ def end_at(x_px: float) -> Endpoint:
 
 def test_an_end_is_shifted_away_from_the_strand_beside_it_and_within_the_square():
     arms = ArrivingArms()
-    skill = PerturbEndpoint(arms, BlindVision(), np.random.default_rng(3))
+    skill = PerturbEndpoint(arms, InlineWorker(), BlindVision(), np.random.default_rng(3))
     outcome, _ = finished(skill, {"frame": frame(), "endpoints": (end_at(560.0),)})
     moves = [entry[1]["right"] for entry in arms.log if entry[0] == "move"]
     step_m = np.subtract(moves[3], moves[2])
@@ -33,14 +34,14 @@ def test_an_end_is_shifted_away_from_the_strand_beside_it_and_within_the_square(
 
 
 def test_an_end_out_of_reach_is_said_to_be():
-    skill = PerturbEndpoint(ArrivingArms(), BlindVision(), np.random.default_rng(3))
+    skill = PerturbEndpoint(ArrivingArms(), InlineWorker(), BlindVision(), np.random.default_rng(3))
     outcome, _ = finished(skill, {"frame": frame(), "endpoints": (end_at(990.0),)})
     assert outcome.reason.code == "grasp.unreachable"
 
 
 def test_a_blocked_shift_is_tried_another_way():
     arms = ArrivingArms()
-    skill = PerturbEndpoint(arms, BlindVision(), np.random.default_rng(3))
+    skill = PerturbEndpoint(arms, InlineWorker(), BlindVision(), np.random.default_rng(3))
     skill.start({"frame": frame(), "endpoints": (end_at(560.0),)})
     while len([entry for entry in arms.log if entry[0] == "move"]) < 3:
         skill.step()
@@ -63,7 +64,7 @@ def test_steps_with_more_room_come_first():
 def test_cable_is_pulled_from_the_end_of_its_trace_towards_the_middle():
     arms = ArrivingArms()
     trace, _, _ = overhand()
-    outcome, _ = finished(PullIn(arms), {"frame": frame(), "trace": trace})
+    outcome, _ = finished(PullIn(arms, InlineWorker()), {"frame": frame(), "trace": trace})
     moves = [entry[1]["right"] for entry in arms.log if entry[0] == "move"]
     assert outcome.status == "SUCCESS"
     assert np.linalg.norm(moves[3][:2]) < np.linalg.norm(moves[2][:2])
