@@ -68,6 +68,14 @@ def median(name: str, samples: Sequence[float], unit: str, goal: str = "") -> Ro
     return Row(name, float(np.median(ordered)), unit, n, float(low), float(high), goal)
 
 
+def mean(name: str, samples: Sequence[float], unit: str, goal: str = "") -> Row:
+    """Return a mean with its interval (normal approximation)."""
+    values = np.asarray(samples, dtype=float)
+    half = Z * float(values.std(ddof=1)) / math.sqrt(len(values)) if len(values) > 1 else math.inf
+    middle = float(values.mean())
+    return Row(name, middle, unit, len(values), middle - half, middle + half, goal)
+
+
 def document(name: str, seed: int, quick: bool, rows: Sequence[Row]) -> str:
     """Return the result document of one run as JSON."""
     content = {

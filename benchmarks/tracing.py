@@ -1,39 +1,44 @@
-"""Tracing one of several cables from its end, in drawn scenes on seeds that training never saw.
+"""Follow one of several cables: tiers B1 to B3 as the thesis has them, and photographs.
 
-The scenes come from the generator that the learned tracer is trained on: they compare
-tracers with each other. They are not the tiers B1 to B3 of the thesis, which are photographs.
-A trace is right when it follows its cable all the way and ends at its other end.
+Tiers are drawn, see `benchmarks.dropped_cables`. A trace starts at a cable's free end; all
+three adapters are known. It is right when it follows its cable all the way to its adapter.
+Photographs count where they are at hand, see `benchmarks.photographs`.
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from benchmarks.dropped_cables import draw_tier
 from benchmarks.following import followed_share
-from benchmarks.harness import Row, share
+from benchmarks.harness import Row, mean, median, share
+from benchmarks.photographs import annotated_traces, followed, labelled_images, told_apart
 from perception.cable.interfaces import Tracer
 from perception.cable.tracers.analytic import AnalyticTracer
 from perception.cable.tracers.learned import LearnedTracer
-from perception.cable.tracers.skeleton import SkeletonTracer
-from perception.cable.types import Endpoint
+from perception.cable.tracers.skeleton import SkeletonTracer, SkeletonTracerConfig
+from perception.cable.tracers.transitions import ThreadingConfig
+from perception.cable.types import Endpoint, Trace
 from perception.models.store import FOLDER
-from perception.training.scenes import Scene, SceneCable, SceneConfig, make_scene
+from perception.training.scenes import Scene
 
 Floats = NDArray[np.float64]
 
 SEED = 940_001
-TABLE = SceneConfig(extent=90.0, size_px=(773, 1032), narrowest_px=5.0, widest_px=7.0, bright=True)
-TIERS = {
-    "one_crossing": replace(TABLE, family="random", cables=1),
-    "three_crossing": replace(TABLE, family="random", cables=3),
-    "one_wound": replace(TABLE, family="dense", cables=1),
-}
+TIERS = ("B1", "B2", "B3")
+# Each crossing by itself, the way that bends least, as mBEST does it (Choi et al. 2023).
+EACH_BY_ITSELF = SkeletonTracerConfig(threading=ThreadingConfig(most=1, ring_cost=0.0))
 TRACERS: dict[str, Callable[[], Tracer]] = {
     "": lambda: LearnedTracer(FOLDER / "tracer_v1"),
     "_skeleton": SkeletonTracer,
     "_analytic": AnalyticTracer,
+}
+PHOTOGRAPH_TRACERS: dict[str, Callable[[], Tracer]] = {
+    **TRACERS,
+    "_least_bending": lambda: SkeletonTracer(EACH_BY_ITSELF),
 }
 # Nodes of a centre line are half a cable width apart.
 START_NODES = 16
@@ -42,62 +47,78 @@ DIRECTION_NODES = 8
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Task:
-    """A scene whose first cable is to be traced, and lies in view as a whole."""
+    """A scene, the cable that is to be traced, from its free end, and all adapters."""
 
     scene: Scene
-    ends: tuple[Endpoint, ...]
+    line_px: Floats
+    adapters: tuple[Endpoint, ...]
 
 
 def run(quick: bool, seed: int) -> Sequence[Row]:
-    """Trace in 40 scenes a tier (6 when quick)."""
-    wanted = 6 if quick else 40
+    """Trace in 30 scenes a tier (6 when quick), and in all photographs (none when quick)."""
+    wanted = 6 if quick else 30
     rows = []
-    for tier, config in TIERS.items():
-        tasks = draw_tasks(config, seed, wanted)
+    for tier in TIERS:
+        tasks = [draw_task(tier, seed, number) for number in range(wanted)]
         for suffix, make in TRACERS.items():
             tracer = make()
-            right = sum(is_right(tracer, task) for task in tasks)
-            rows.append(share(tier + suffix, right, wanted))
+            right = sum(is_right(task, _traced(tracer, task)) for task in tasks)
+            goal = ">= 0.967" if not suffix else ""
+            rows.append(share(tier + suffix, right, wanted, goal))
+    return rows if quick else rows + _photographs()
+
+
+def _photographs() -> list[Row]:
+    tasks, rows = list(annotated_traces()), []
+    for suffix, make in PHOTOGRAPH_TRACERS.items() if tasks else ():
+        tracer = make()
+        shares = [followed(tracer, task) for task in tasks]
+        hits = sum(value >= 0.95 for value in shares)
+        goal = ">= 0.8" if not suffix else ""
+        rows.append(share("real_followed_95" + suffix, hits, len(tasks), goal))
+        rows.append(median("real_followed_median" + suffix, shares, "1"))
+    images = list(labelled_images())
+    for suffix, grey in {"": _brightest, "_grey": _greyed}.items() if images else ():
+        results = [told_apart(grey(labelled.image), labelled.labels) for labelled in images]
+        counted = sum(right for right, _ in results)
+        rows.append(share("mbest_counts" + suffix, counted, len(images), "= 1"))
+        rows.append(mean("mbest_dice" + suffix, [dice for _, dice in results], "1", ">= 0.96"))
     return rows
 
 
-def draw_tasks(config: SceneConfig, seed: int, wanted: int) -> list[Task]:
-    """Return the first scenes of a seed whose first cable lies in view as a whole."""
-    tasks: list[Task] = []
-    number = 0
-    while len(tasks) < wanted:
-        scene = make_scene(np.random.default_rng([SEED, seed, number]), config)
-        number += 1
-        if _in_view(scene, scene.cables[0]):
-            ends = [end for cable in scene.cables for end in _ends(scene, cable)]
-            tasks.append(Task(scene, tuple(ends)))
-    return tasks
+def _brightest(image: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    return np.asarray(image.max(axis=2), np.uint8)
 
 
-def is_right(tracer: Tracer, task: Task) -> bool:
-    """Say whether a tracer follows the first cable from its first end to its last."""
-    line, width_px = task.scene.cables[0].points_px, task.scene.width_px
-    trace = tracer.trace(task.scene.image, line[:START_NODES:2], task.ends)
+def _greyed(image: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    return np.asarray(cv2.cvtColor(image, cv2.COLOR_BGR2GRAY), np.uint8)
+
+
+def draw_task(tier: str, seed: int, number: int) -> Task:
+    """Return one task of a tier; every cable gets its turn."""
+    scene = draw_tier(np.random.default_rng([SEED, seed, TIERS.index(tier), number]), tier)
+    lines = [cable.points_px for cable in scene.cables]
+    adapters = tuple(_adapter(line) for line in lines)
+    return Task(scene, lines[number % len(lines)][::-1], adapters)
+
+
+def _adapter(line_px: Floats) -> Endpoint:
+    inwards = line_px[DIRECTION_NODES] - line_px[0]
+    return Endpoint(line_px[0], inwards / np.linalg.norm(inwards), 1.0)
+
+
+def _traced(tracer: Tracer, task: Task) -> Trace | None:
+    return tracer.trace(task.scene.image, task.line_px[:START_NODES:2], task.adapters)
+
+
+def is_right(task: Task, trace: Trace | None) -> bool:
+    """Say whether a trace follows its cable from its free end to its adapter."""
     if trace is None or len(trace.points_px) < 2:
         return False
+    width_px = task.scene.width_px
     # Connectors hide the ends themselves.
-    truth = line[DIRECTION_NODES:-DIRECTION_NODES]
+    truth = task.line_px[DIRECTION_NODES:-DIRECTION_NODES]
     tolerance_px, gap_px = 1.3 * width_px, 5.0 * width_px
     if followed_share(truth, trace.points_px, tolerance_px, gap_px) < 1.0:
         return False
-    return float(np.linalg.norm(trace.points_px[-1] - line[-1])) < 5.0 * width_px
-
-
-def _in_view(scene: Scene, cable: SceneCable) -> bool:
-    size = np.array(scene.image.shape[::-1])
-    return bool((cable.points_px > 12.0).all() and (cable.points_px < size - 12.0).all())
-
-
-def _ends(scene: Scene, cable: SceneCable) -> list[Endpoint]:
-    size = np.array(scene.image.shape[::-1])
-    ends = []
-    for line in (cable.points_px, cable.points_px[::-1]):
-        inwards = line[DIRECTION_NODES] - line[0]
-        if (line[0] > 0.0).all() and (line[0] < size).all():
-            ends.append(Endpoint(line[0], inwards / np.linalg.norm(inwards), 1.0))
-    return ends
+    return float(np.linalg.norm(trace.points_px[-1] - task.line_px[-1])) < 5.0 * width_px

@@ -1,5 +1,6 @@
 """Random scenes of one to three cables with exact truth: geometry first, then an image."""
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,6 +13,9 @@ from perception.training.render import draw_look, render
 from perception.training.waypoints import SPACING
 
 Floats = NDArray[np.float64]
+# Whether the earlier of two nodes (numbered through all cables) is on top where their strands
+# cross; None where chance may say.
+FirstOver = Callable[[float, float], bool | None]
 
 MOST_NODES = 1400
 SHARES = {
@@ -88,11 +92,28 @@ class SceneConfig:
 def make_scene(rng: np.random.Generator, config: SceneConfig | None = None) -> Scene:
     """Draw a scene."""
     config = config or SceneConfig()
+    return lay_scene(rng, _lines(rng, config), config)
+
+
+def lay_scene(
+    rng: np.random.Generator,
+    lines: Sequence[Floats],
+    config: SceneConfig,
+    first_over: FirstOver | None = None,
+) -> Scene:
+    """Return a scene of cables along given lines.
+
+    Args:
+        rng: Source of all randomness.
+        lines: Centre lines with nodes half a cable width apart, in cable widths, in the square
+            of the config's extent; shape (N, 2) each.
+        config: What the scene looks like.
+        first_over: Says where over and under is prescribed.
+    """
     width_px = float(np.exp(rng.uniform(np.log(config.narrowest_px), np.log(config.widest_px))))
     side_px = int(config.extent * width_px)
     size_px = config.size_px or (side_px, side_px)
-    lines = _lines(rng, config)
-    nodes, cable = _settled(rng, lines)
+    nodes, cable = _settled(rng, lines, first_over)
     parts = [nodes[cable == k] for k in range(len(lines))]
     origin_px = np.array([size_px[1] - side_px, size_px[0] - side_px]) / 2.0
     look = draw_look(rng, len(lines), config.bright)
@@ -129,7 +150,9 @@ def _lines(rng: np.random.Generator, config: SceneConfig) -> list[Floats]:
     return lines
 
 
-def _settled(rng: np.random.Generator, lines: list[Floats]) -> tuple[Floats, NDArray[np.int64]]:
+def _settled(
+    rng: np.random.Generator, lines: Sequence[Floats], first_over: FirstOver | None
+) -> tuple[Floats, NDArray[np.int64]]:
     """Choose what lies over what, and part the strands; returns balls and their cables."""
     xy = np.vstack(lines)
     cable = np.repeat(np.arange(len(lines)), [len(line) for line in lines])
@@ -137,7 +160,10 @@ def _settled(rng: np.random.Generator, lines: list[Floats]) -> tuple[Floats, NDA
     in_order = rng.random() < 0.3
     number = np.arange(len(xy))
     for first, second in contact.crossings(xy, cable):
+        known = first_over(first, second) if first_over is not None else None
         upper = second if in_order and rng.random() < 0.85 else rng.choice([first, second])
+        if known is not None:
+            upper = first if known else second
         heights += 0.7 * np.exp(-(((number - upper) * SPACING / 1.5) ** 2))
     nodes = np.column_stack([xy, heights])
     contact.settle(nodes, cable, contact.near_pairs(xy, cable), 40)

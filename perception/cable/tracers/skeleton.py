@@ -25,9 +25,11 @@ from perception.cable.tracers.centre_line import (
 )
 from perception.cable.tracers.junctions import JunctionConfig, Junctions, find_junctions
 from perception.cable.tracers.transitions import (
+    Threading,
     ThreadingConfig,
     best_threadings,
     strand_probabilities,
+    walk,
 )
 from perception.cable.types import Endpoint, Points, Trace, TraceEnd
 from perception.camera import GreyImage
@@ -47,6 +49,7 @@ class SkeletonTracerConfig:
         end_widths: Farthest an endpoint may lie from the trace that finishes at it.
         connector_widths: Longest piece of trace beyond an endpoint.
         border_px: A trace that ends nearer to the border has left the view.
+        shortest_widths: Strands shorter than this are no cables.
     """
 
     junctions: JunctionConfig = field(default_factory=JunctionConfig)
@@ -58,6 +61,7 @@ class SkeletonTracerConfig:
     end_widths: float = 2.0
     connector_widths: float = 9.0
     border_px: float = 9.0
+    shortest_widths: float = 10.0
 
 
 class SkeletonTracer:
@@ -93,6 +97,20 @@ class SkeletonTracer:
         end, line = self._end(mask, arms, line, endpoints)
         return Trace(line, end, probability)
 
+    def strands_observed(self, observation: Observation) -> tuple[Trace, ...]:
+        """Return every cable in view, longest first, each as one trace from either end."""
+        mask, graph, config = observation.mask, observation.graph, self._config
+        junctions = find_junctions(graph, mask.width_px, config.junctions)
+        threadings = best_threadings(junctions.all, config.threading)
+        drawing = _Line(mask, graph, junctions, config)
+        traces = []
+        for leaving in _first_arms(graph, junctions, threadings[0]):
+            arms, probability = strand_probabilities(threadings, leaving)[0]
+            line = drawing.draw(arms, 0.0)
+            if arc_lengths(line)[-1] > config.shortest_widths * mask.width_px:
+                traces.append(Trace(line, self._end(mask, arms, line, ())[0], probability))
+        return tuple(sorted(traces, key=lambda trace: -float(arc_lengths(trace.points_px)[-1])))
+
     def _end(
         self,
         mask: CableMask,
@@ -114,6 +132,23 @@ class SkeletonTracer:
         if leaves_view(mask, line[-1], self._config.border_px):
             return TraceEnd.EDGE, line
         return TraceEnd.LOST, line
+
+
+def _first_arms(graph: SkeletonGraph, junctions: Junctions, threading: Threading) -> list[Arm]:
+    """Return an arm for each strand of a threading, by which it leaves its first edge."""
+    seen: set[Arm] = set()
+    first = []
+    arms = [(number, end) for number in range(len(graph.edges)) for end in (0, 1)]
+    loose = [arm for arm in arms if arm[0] not in junctions.bridges]
+    # Where a strand begins nothing leads in; what is left after those are rings.
+    beginnings = [(n, 1 - end) for n, end in loose if (n, end) not in threading.partners]
+    for arm in beginnings + loose:
+        if arm in seen:
+            continue
+        first.append(arm)
+        passed = walk(threading.partners, arm)
+        seen |= {(number, end) for number, _ in passed for end in (0, 1)}
+    return first
 
 
 def _find_start(

@@ -1,0 +1,221 @@
+"""Scenes of three cables as in the thesis's Table 4.3, drawn: dropped, knotted, tied together.
+
+Two cables of 3 m and one of 2 m lie upon each other and go from three adapters to free ends.
+B1: dropped one after another. B2: each with an overhand or a figure-8 knot of 5 to 10 cm.
+B3: two tied together by a square knot, the third wound round one of them. The thesis's tiers
+are photographs; these are drawn by what also draws the learned tracer's training, along
+lines of another making.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from perception.training import contact
+from perception.training.scenes import Scene, SceneConfig, lay_scene
+from perception.training.waypoints import through
+from simulation.cable.knots import TEMPLATES
+
+Floats = NDArray[np.float64]
+
+# Lengths in cable widths of 6.6 mm.
+WIDTH_M = 0.0066
+LENGTHS = (3.0 / WIDTH_M, 3.0 / WIDTH_M, 2.0 / WIDTH_M)
+KNOT_WIDTHS = (0.05 / WIDTH_M, 0.10 / WIDTH_M)
+CONFIG = SceneConfig(
+    extent=180.0, size_px=(773, 1032), narrowest_px=5.0, widest_px=5.6, bright=True
+)
+# What of the square of that extent the camera sees, less a margin.
+LOW, HIGH = np.array([6.0, 28.0]), np.array([174.0, 152.0])
+STEP = 3.0
+# Typical curvature of cable on a table, and how fast it changes; its least radius.
+CURVATURE, MEMORY, TIGHTEST = 1.0 / 14.0, 0.8, 4.0
+BORDER = 22.0
+TRIES = 400
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Core:
+    """A piece of one cable that is laid first.
+
+    Attributes:
+        points: Waypoints, shape (N, 2).
+        over: Whether the cable is on top at each of its visits in order: of crossings with
+            itself, or where `other` is given of those with another core.
+        other: Which core that is.
+    """
+
+    points: Floats
+    over: tuple[bool, ...] = ()
+    other: int | None = None
+
+
+def draw_tier(rng: np.random.Generator, tier: str) -> Scene:
+    """Draw a scene of tier B1, B2 or B3."""
+    cores = {"B1": _dropped, "B2": _knotted, "B3": _tied}[tier]
+    for _ in range(TRIES):
+        chosen = cores(rng)
+        lines = [
+            _grown(rng, core.points, length) for core, length in zip(chosen, LENGTHS, strict=True)
+        ]
+        known = _prescribed(chosen, lines)
+        if known is not None:
+            return lay_scene(rng, lines, CONFIG, known)
+    raise RuntimeError(f"no scene of tier {tier} in {TRIES} tries")
+
+
+def _dropped(rng: np.random.Generator) -> list[Core]:
+    straight = np.array([[-2.0, 0.0], [0.0, 0.0], [2.0, 0.0]])
+    places = rng.uniform(LOW + 30.0, HIGH - 30.0, (3, 2))
+    return [Core(place + _turned(rng, straight)) for place in places]
+
+
+def _knotted(rng: np.random.Generator) -> list[Core]:
+    cores = []
+    for place in rng.uniform(LOW + 25.0, HIGH - 25.0, (3, 2)):
+        template = TEMPLATES["overhand" if rng.random() < 0.5 else "figure_8"]
+        mirrored = bool(rng.random() < 0.5)
+        size = rng.uniform(*KNOT_WIDTHS) / template.diameter
+        points = np.array(template.corners) * size * ((1.0, -1.0) if mirrored else (1.0, 1.0))
+        over = tuple(on_top != mirrored for on_top in template.over)
+        cores.append(Core(place + _turned(rng, points), over))
+    return cores
+
+
+# One of both bights of a square knot: in between its legs, and out round the other's. It
+# passes the other one six times; both legs lie on one side of the other's bight.
+HALF_BIGHT = np.array([[-3.2, 0.75], [-1.2, 0.75], [0.0, 1.15], [0.9, 1.5], [1.3, 0.8]])
+BIGHT = np.vstack([HALF_BIGHT, [[1.35, 0.0]], HALF_BIGHT[::-1] * (1.0, -1.0)])
+BIGHT_OVER = (True, False, True, True, False, True)
+
+
+def _tied(rng: np.random.Generator) -> list[Core]:
+    size = rng.uniform(*KNOT_WIDTHS) / 3.0
+    place = rng.uniform(LOW + 45.0, HIGH - 45.0)
+    both = _turned(rng, np.vstack([BIGHT, -BIGHT]) * size)
+    first, second = place + both[: len(BIGHT)], place + both[len(BIGHT) :]
+    leg = _grown(rng, first, LENGTHS[0])
+    # The third cable winds round the first one, away from the knot.
+    begin = int(rng.uniform(0.1, 0.25) * len(leg))
+    half_turns = int(rng.integers(2, 5))
+    along = leg[begin : begin + int(half_turns * rng.uniform(14.0, 22.0))]
+    return [
+        Core(leg, BIGHT_OVER, other=1),
+        Core(second),
+        Core(_wound(along, half_turns), tuple(k % 2 == 0 for k in range(half_turns)), other=0),
+    ]
+
+
+def _wound(along: Floats, half_turns: int) -> Floats:
+    """Return waypoints of a line that changes sides of another one so many times."""
+    tangent = np.gradient(along, axis=0)
+    tangent /= np.maximum(np.linalg.norm(tangent, axis=1, keepdims=True), 1e-9)
+    normal = np.column_stack([-tangent[:, 1], tangent[:, 0]])
+    phase = np.linspace(-0.5, half_turns - 0.5, len(along)) * np.pi
+    wave = 1.3 * np.cos(phase + 0.5 * np.pi)
+    # It comes from well aside, and goes off to where it came to last.
+    ends = np.maximum(np.abs(np.linspace(-1.0, 1.0, len(along))) - 0.8, 0.0) * 20.0
+    wound: Floats = (along + normal * (wave + np.sign(wave) * ends)[:, None])[::4]
+    return wound
+
+
+def _turned(rng: np.random.Generator, points: Floats) -> Floats:
+    turn = rng.uniform(0.0, 2.0 * np.pi)
+    rotation = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
+    turned: Floats = points @ rotation.T
+    return turned
+
+
+def _grown(rng: np.random.Generator, core: Floats, length: float) -> Floats:
+    """Return a cable of a length, grown from its core to both sides, as nodes."""
+    there = float(np.linalg.norm(np.diff(core, axis=0), axis=1).sum())
+    if there >= length - 2.0 * STEP:
+        return core
+    left = length - there
+    first = rng.uniform(0.3, 0.7) * left
+    head, tail = _walk(rng, core[::-1], first), _walk(rng, core, left - first)
+    return through(np.vstack([head[::-1], core, tail]), 0.8)
+
+
+def _walk(rng: np.random.Generator, core: Floats, length: float) -> Floats:
+    """Return waypoints that lead on from the last point of a core, and stay in the area."""
+    here, curvature = core[-1], 0.0
+    heading = float(np.arctan2(*(core[-1] - core[-2])[::-1]))
+    points = []
+    for _ in range(max(int(length / STEP), 1)):
+        noise = rng.normal(0.0, CURVATURE * np.sqrt(1.0 - MEMORY**2))
+        curvature = MEMORY * curvature + noise + _inwards(here, heading)
+        curvature = float(np.clip(curvature, -1.0 / TIGHTEST, 1.0 / TIGHTEST))
+        heading += curvature * STEP
+        here = here + STEP * np.array([np.cos(heading), np.sin(heading)])
+        points.append(here)
+    return np.array(points)
+
+
+def _inwards(here: Floats, heading: float) -> float:
+    """Return how much to turn more, so as not to leave the area."""
+    excess = np.clip((LOW + BORDER - here) / BORDER, 0.0, 1.0)
+    excess -= np.clip((here - HIGH + BORDER) / BORDER, 0.0, 1.0)
+    pull = float(np.linalg.norm(excess))
+    if pull == 0.0:
+        return 0.0
+    wanted = float(np.arctan2(excess[1], excess[0]))
+    off = float((wanted - heading + np.pi) % (2.0 * np.pi) - np.pi)
+    return 0.25 * pull * float(np.sign(off)) * min(abs(off), 1.0)
+
+
+@dataclass(frozen=True, slots=True)
+class _Known:
+    """What is prescribed: for each pair of nodes, whether the earlier one is on top."""
+
+    pairs: dict[tuple[float, float], bool]
+
+    def __call__(self, first: float, second: float) -> bool | None:
+        return self.pairs.get((first, second))
+
+
+def _prescribed(cores: Sequence[Core], lines: Sequence[Floats]) -> _Known | None:
+    """Return over and under of all cores; None where lines do not cross as their cores should."""
+    if any((line < LOW - 3.0).any() or (line > HIGH + 3.0).any() for line in lines):
+        return None
+    xy = np.vstack(lines)
+    cable = np.repeat(np.arange(len(lines)), [len(line) for line in lines])
+    starts = np.searchsorted(cable, np.arange(len(lines)))
+    found = contact.crossings(xy, cable)
+    spans = [
+        starts[k] + _span(core, line)
+        for k, (core, line) in enumerate(zip(cores, lines, strict=True))
+    ]
+    pairs: dict[tuple[float, float], bool] = {}
+    for number, core in enumerate(cores):
+        if not core.over:
+            continue
+        other = number if core.other is None else core.other
+        mine = [pair for pair in found if _joins(pair, spans[number], spans[other])]
+        visits = sorted(
+            (float(at), (float(a), float(b)))
+            for a, b in mine
+            for at in ((a, b) if other == number else ((a,) if number < other else (b,)))
+        )
+        if len(visits) != len(core.over):
+            return None
+        for (at, pair), on_top in zip(visits, core.over, strict=True):
+            pairs[pair] = on_top if at == pair[0] else not on_top
+    return _Known(pairs)
+
+
+def _span(core: Core, line: Floats) -> NDArray[np.int64]:
+    """Return the nodes at which a core begins and ends in its line."""
+    ends = [int(np.linalg.norm(line - end, axis=1).argmin()) for end in core.points[[0, -1]]]
+    return np.array(sorted(ends))
+
+
+def _joins(pair: Floats, one: NDArray[np.int64], other: NDArray[np.int64]) -> bool:
+    """Say whether a crossing lies within both spans, either way round."""
+    a, b = pair
+    return bool(
+        (one[0] <= a <= one[1] and other[0] <= b <= other[1])
+        or (one[0] <= b <= one[1] and other[0] <= a <= other[1])
+    )
