@@ -7,6 +7,7 @@ from executive.core.errors import Fault, InputError
 from executive.core.registry import Registry, closest
 from executive.core.skill import Port, Skill
 from executive.engine.cases import case_faults
+from executive.engine.claim_checks import claim_faults
 from executive.engine.flow import find_early_reads
 from executive.engine.inference import infer
 from executive.engine.keys import KeyTable
@@ -31,7 +32,7 @@ def check_tree(
         skills: Skills by name.
         subtrees: Trees that it uses, by name; None for one that has faults itself.
     """
-    faults = list(structural_faults(tree, skills))
+    faults = [*structural_faults(tree, skills), *claim_faults(tree, skills, subtrees)]
     ports = PortTable(skills, subtrees)
     wirings = {node: wire(node, ports, faults) for node in tree.root.walk()}
     check = _WiringCheck(tree, KeyTable(tree, wirings), faults)

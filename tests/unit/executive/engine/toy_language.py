@@ -85,6 +85,12 @@ class Work(Skill):
         self._journal.note(f"{self._label} stops")
 
 
+class Grab(Work):
+    """Work with the one arm that there is."""
+
+    CLAIMS = frozenset({"arm"})
+
+
 class Liar(Skill):
     """Give something else than it declares."""
 
@@ -113,7 +119,7 @@ class Sort(Skill):
 def toy_skills():
     """Return the toy skills."""
     registry = Registry("skill")
-    for skill in (Find, Weigh, Work, Liar, Sort):
+    for skill in (Find, Weigh, Work, Grab, Liar, Sort):
         registry.add(skill.__name__.lower(), skill)
     return registry
 
