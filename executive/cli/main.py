@@ -16,7 +16,6 @@ from typing import Annotated, Any
 import typer
 from typer.core import TyperGroup
 
-from executive.cli.console import chatter, print_error
 from executive.core.errors import CellwrightError, InputError
 
 _COMMANDS: Mapping[str, str] = MappingProxyType(
@@ -103,6 +102,8 @@ def _options(
 
 def main() -> None:
     """Run the command line; bad input exits with 2, any other trouble of ours with 3."""
+    # Looking for plugins reads the metadata of every package that is installed.
+    os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
     try:
         app()
     except CellwrightError as error:
