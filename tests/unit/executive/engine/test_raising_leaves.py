@@ -1,0 +1,72 @@
+"""A node that raises ends the mission or fails, as the mission says."""
+
+import pytest
+from toy_missions import Rehearsal
+
+from executive.engine.runner import MissionOutcome
+from executive.engine.supervision import RAISED
+
+TRY = "{selector: [{skill: breaks, in: {after: 1}}, {skill: swing, in: {steps: 2}}]}"
+
+
+def test_by_default_a_node_that_raises_ends_the_mission(tmp_path):
+    rehearsal = Rehearsal(tmp_path, TRY)
+    result = rehearsal.run()
+    assert result.outcome is MissionOutcome.ERROR
+    assert result.reason.startswith("m/breaks (breaks): raised at tick 1: ValueError: broken wire")
+    assert rehearsal.journal.lines == ["breaks stops"]
+    assert rehearsal.cell.calls == ["stop"]
+
+
+def test_on_error_fail_lets_the_mission_go_on_with_the_fault_recorded(tmp_path):
+    rehearsal = Rehearsal(tmp_path, TRY, "on_error: fail")
+    result = rehearsal.run()
+    assert result.outcome is MissionOutcome.SUCCESS
+    assert result.errors == ()
+    assert rehearsal.journal.lines == ["breaks stops", "hold 0", "hold 1"]
+    tick = rehearsal.seen.ticks[1]
+    assert [(fault.path, fault.message) for fault in tick.faults] == [
+        ("m/breaks", "ValueError: broken wire"),
+        ("m/breaks", "OSError: valve"),
+    ]
+    assert "broken wire" in tick.faults[0].traceback
+    (outcome,) = (end for end in tick.outcomes if end.reason is not None)
+    assert (outcome.reason.code, outcome.reason.text) == (RAISED, "ValueError: broken wire")
+    assert [(error.path, error.tick) for error in result.survived] == [("m/breaks", 1)] * 2
+
+
+def test_the_reason_reaches_the_mission(tmp_path):
+    result = Rehearsal(tmp_path, "{skill: breaks}", "on_error: fail").run()
+    assert result.outcome is MissionOutcome.FAILURE
+    assert result.reason == "m: node.raised: ValueError: broken wire"
+
+
+@pytest.mark.parametrize(
+    "leaf", ["{when: missing}", "{set: {copy: missing}}", "{skill: work, in: {label: $missing}}"]
+)
+def test_conditions_and_inputs_that_cannot_be_read_fail_too(tmp_path, leaf):
+    value = "\"'x'\"" if "label" in leaf else '"true"'
+    root = f"""
+    sequence:
+      - force_success: {{child: {{when: "false", on_success: {{missing: {value}}}}}}}
+      - force_success: {{child: {leaf}}}
+      - {{skill: swing, in: {{steps: 1}}}}
+    """
+    assert Rehearsal(tmp_path, root).run().outcome is MissionOutcome.ERROR
+    rehearsal = Rehearsal(tmp_path, root, "on_error: fail")
+    assert rehearsal.run().outcome is MissionOutcome.SUCCESS
+    assert "missing" in str(rehearsal.seen.ticks[0].faults)
+
+
+def test_an_exit_ends_the_mission_whatever_it_says_and_stops_every_leaf(tmp_path):
+    root = """
+    parallel:
+      - {skill: swing, in: {steps: 9}}
+      - {skill: breaks, in: {after: 1, badly: true}}
+    """
+    rehearsal = Rehearsal(tmp_path, root, "on_error: fail")
+    result = rehearsal.run()
+    assert result.outcome is MissionOutcome.ERROR
+    assert "m/breaks (breaks): raised at tick 1: SystemExit: 3" in result.reason
+    assert sorted(rehearsal.journal.lines) == ["breaks stops", "hold 0", "hold 1", "hold stops"]
+    assert rehearsal.cell.calls == ["stop"]
