@@ -25,6 +25,7 @@ from executive.engine.document import (
     TreeDocument,
 )
 from executive.engine.outline import TreeSpec, outline
+from executive.engine.packages import package_folders, user_folders
 from executive.engine.porttypes import fit, parse_type
 from executive.engine.sources import Source, read_source
 from executive.engine.stubs import stub_skills
@@ -49,7 +50,7 @@ def search_folders(beside: Path | None, search_paths: Iterable[Path]) -> tuple[P
         search_paths: Folders that the user gave.
     """
     roots = [beside.parent, beside.parent.parent] if beside else []
-    roots += [*search_paths, packaged_trees()]
+    roots += [*search_paths, *user_folders(), packaged_trees(), *package_folders()]
     folders = (folder for root in roots for folder in (root, *(root / name for name in FOLDERS)))
     return tuple(dict.fromkeys(folders))
 
