@@ -12,6 +12,7 @@ from rich.text import Text
 
 from executive.cli.console import chatter, results
 from executive.cli.reported_run import (
+    Debugging,
     HtmlOption,
     JsonOption,
     Prepared,
@@ -81,7 +82,7 @@ def resume(
     def prepare(control: RunControl, console: Console, stack: ExitStack) -> Prepared:
         return _prepared(earlier, request, control, console, stack)
 
-    subject = Subject(earlier.header.mission, earlier.header.seed, view, html)
+    subject = Subject(earlier.header.mission, earlier.header.seed, view, html, Debugging())
     run_and_exit(subject, prepare, as_json=as_json)
 
 

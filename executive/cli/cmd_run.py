@@ -9,8 +9,12 @@ import typer
 from rich.console import Console
 
 from executive.cli.reported_run import (
+    BreakOption,
+    BreaksOption,
+    Debugging,
     HtmlOption,
     JsonOption,
+    PausedOption,
     Prepared,
     RecordOption,
     Subject,
@@ -45,6 +49,9 @@ def run(
     timeout: TimeoutOption = None,
     view: ViewOption = False,
     html: HtmlOption = None,
+    breakpoints: BreakOption = None,
+    breaks: BreaksOption = None,
+    paused: PausedOption = False,
     as_json: JsonOption = False,
 ) -> None:
     """Run a mission and record it.
@@ -59,7 +66,8 @@ def run(
     def prepare(control: RunControl, console: Console, stack: ExitStack) -> Prepared:
         return _prepared(request, control, console, stack)
 
-    run_and_exit(Subject(mission, seed, view, html), prepare, as_json=as_json)
+    debugging = Debugging(tuple(breakpoints or ()), breaks, paused)
+    run_and_exit(Subject(mission, seed, view, html, debugging), prepare, as_json=as_json)
 
 
 def _prepared(

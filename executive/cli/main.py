@@ -10,6 +10,7 @@ import sys
 import traceback
 from collections.abc import Mapping
 from importlib import import_module
+from pathlib import Path
 from types import MappingProxyType
 from typing import Annotated, Any
 
@@ -25,6 +26,7 @@ _COMMANDS: Mapping[str, str] = MappingProxyType(
         "check": "executive.cli.cmd_check",
         "lint": "executive.cli.cmd_lint",
         "fmt": "executive.cli.cmd_fmt",
+        "attach": "executive.cli.cmd_attach",
         "inspect": "executive.cli.cmd_inspect",
         "ticks": "executive.cli.cmd_ticks",
         "why": "executive.cli.cmd_why",
@@ -96,8 +98,21 @@ def _options(
             "--version", callback=_print_version, is_eager=True, help="Print it and exit."
         ),
     ] = False,
+    path: Annotated[
+        list[Path] | None,
+        typer.Option(
+            "--path",
+            exists=True,
+            file_okay=False,
+            help="Folder to look for trees in, before those in CELLWRIGHT_PATH.",
+        ),
+    ] = None,
 ) -> None:
     """Take the options that stand before a command."""
+    if path:
+        from executive.engine.packages import put_first
+
+        put_first(path)
 
 
 def main() -> None:

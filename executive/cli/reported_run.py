@@ -25,6 +25,7 @@ from executive.inspector.views import OUTCOME_STYLES
 if TYPE_CHECKING:
     from executive.app.views import LiveView
     from executive.engine.builder import BuiltTree
+    from executive.engine.debugging.debugger import Debugger
     from executive.engine.mission_run import RunPlan
 
 _BAD_INPUT, _ERROR = 2, MissionOutcome.ERROR.exit_code
@@ -42,6 +43,21 @@ HtmlOption = Annotated[
     Path | None,
     typer.Option(dir_okay=False, help="Write a replay of the cell as one HTML file."),
 ]
+BreakOption = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--break",
+        metavar="BREAKPOINT",
+        help="Pause there: 'dilate_knot when size(knots) > 1', 'on failure', 'on write trace'.",
+    ),
+]
+BreaksOption = Annotated[
+    Path | None,
+    typer.Option("--breaks", dir_okay=False, exists=True, help="File of breakpoints, one a line."),
+]
+PausedOption = Annotated[
+    bool, typer.Option("--paused", help="Pause before the first tick; see cellwright attach.")
+]
 JsonOption = Annotated[bool, typer.Option("--json", help="Print one JSON document on stdout.")]
 
 
@@ -53,6 +69,16 @@ class Subject:
     seed: int
     view: bool
     html: Path | None
+    debugging: "Debugging"
+
+
+@dataclass(frozen=True, slots=True)
+class Debugging:
+    """Where a mission is to pause: breakpoints as text, a file of them, before the first tick."""
+
+    breakpoints: tuple[str, ...] = ()
+    file: Path | None = None
+    paused: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,12 +142,31 @@ def _recorded_run(
         # Only now, with the input in order, is it worth loading what a run needs.
         from executive.engine.mission_run import recorded_nodes, run_mission
 
-        tree = prepared.tree
+        tree, debugger = prepared.tree, _debugger(subject.debugging, prepared.tree, control)
         live = [stack.enter_context(closing(_live_view(console)))] if subject.view else []
         with RunDisplay(console, recorded_nodes(tree.nodes)) as display:
             observers: tuple[RunObserver, ...] = (display, *live)
-            done = run_mission(prepared.plan, tree, prepared.cell, control, observers)
+            done = run_mission(prepared.plan, tree, prepared.cell, control, observers, debugger)
     return _Result(done.report, done.slow, done.raised)
+
+
+def _debugger(debugging: Debugging, tree: "BuiltTree", control: RunControl) -> "Debugger":
+    from executive.engine.debugging.breakpoints import parse_breakpoint_file
+    from executive.engine.debugging.debugger import Debugger
+
+    debugger = Debugger(tree, control)
+    for text in debugging.breakpoints:
+        debugger.add(text)
+    if debugging.file is not None:
+        try:
+            breakpoints = parse_breakpoint_file(debugging.file.read_text(encoding="utf-8"))
+        except (InputError, UnicodeDecodeError) as error:
+            raise InputError(f"{debugging.file}: {error}") from None
+        for one in breakpoints:
+            debugger.add(one.text)
+    if debugging.paused:
+        control.pause("--paused")
+    return debugger
 
 
 def _live_view(console: Console) -> "LiveView":

@@ -3,7 +3,8 @@
 import dataclasses
 import platform
 import sys
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -18,6 +19,8 @@ from executive.engine.checkpoints.messages import CHECKPOINTS_TOPIC
 from executive.engine.checkpoints.past import Resumption
 from executive.engine.checkpoints.taking import CheckpointRecorder
 from executive.engine.control import RunControl
+from executive.engine.debugging.commands import RunCommands
+from executive.engine.debugging.debugger import Debugger
 from executive.engine.loader import Mission
 from executive.engine.recording.actions import ActionLog
 from executive.engine.recording.messages import (
@@ -29,6 +32,7 @@ from executive.engine.recording.messages import (
 )
 from executive.engine.recording.slow import SlowLog
 from executive.engine.recording.writer import RecordingWriter
+from executive.engine.remote import CommandServer
 from executive.engine.runner import Runner, one_line
 from executive.engine.ticks import RunObserver
 
@@ -71,6 +75,7 @@ def run_mission(
     cell: Cell,
     control: RunControl,
     observers: Sequence[RunObserver] = (),
+    debugger: Debugger | None = None,
 ) -> ResultMessage:
     """Run a mission to its end, record it, and score it where the cell knows the truth.
 
@@ -82,6 +87,7 @@ def run_mission(
         cell: The cell; it stays open.
         control: How to pause and stop the run.
         observers: Who else is told of every tick.
+        debugger: Who may pause it anywhere; its run can be commanded from outside.
 
     Raises:
         RecordingError: The recording cannot be written.
@@ -98,10 +104,12 @@ def run_mission(
             timeout_s=plan.timeout_s,
             observers=(writer, actions, slow, *observers),
             control=control,
+            debugger=debugger,
             past=plan.resumption.past if plan.resumption else None,
         )
         CheckpointRecorder(tree, cell, runner, writer, first=_next_checkpoint(plan.resumption))
-        result = runner.run()
+        with commanded(plan.recording, control, debugger):
+            result = runner.run()
         raised = [one_line(error) for error in result.survived]
         report = RunReport(
             mission=header.mission,
@@ -121,6 +129,16 @@ def run_mission(
         )
         writer.write_result(message)
     return message
+
+
+@contextmanager
+def commanded(recording: Path, control: RunControl, debugger: Debugger | None) -> Iterator[None]:
+    """Take commands from other processes while the block lasts, where there is a debugger."""
+    if debugger is None:
+        yield
+        return
+    with CommandServer(recording, RunCommands(control, debugger).by_name()):
+        yield
 
 
 def _repeat(

@@ -79,6 +79,11 @@ class TreeProbe:
         )
         return events, tuple(ends)
 
+    def intercept_with(self, intercept: Interceptor | None) -> None:
+        """Put something else between nodes and their parents, from the next tick on."""
+        self._direct = DirectTicks(self._tree.root, self.behaviours, intercept)
+        self._plain = False
+
     @property
     def answer(self) -> NodeStatus:
         """What the root answered in the last tick."""

@@ -126,8 +126,9 @@ class Runner:
         if debugger is not None:
             debugger.waits_with(self._wait_in_tick)
             self._observers = (*self._observers, debugger)
-            interceptors = (debugger.intercept, *interceptors)
-        self._probe = TreeProbe(tree, chained(tuple(interceptors)))
+        self._interceptors = tuple(interceptors)
+        self._probe = TreeProbe(tree, chained(self._interceptors))
+        self._watched = False
         now_s = self._clock.now_s()
         begun = Progress(tick=0, time_s=now_s, start_s=now_s, grid_s=now_s)
         if past is not None:
@@ -222,7 +223,16 @@ class Runner:
         if errors:
             raise errors[0]
 
+    def _watch(self) -> None:
+        """Put the debugger between nodes and parents, or take it away, as it needs to be."""
+        debugger = self._debugger
+        if debugger is not None and debugger.watches_nodes is not self._watched:
+            self._watched = not self._watched
+            first = (debugger.intercept,) if self._watched else ()
+            self._probe.intercept_with(chained((*first, *self._interceptors)))
+
     def _tick(self) -> _Ending | None:
+        self._watch()
         now_s = self._clock.now_s()
         with self.control.interruptible():
             tick, error = self._probe.tick(self._number, now_s)

@@ -43,6 +43,7 @@ _ENDS: Mapping[Event, tuple[Status, ...]] = {
     Event.FAILURE: (Status.FAILURE,),
     Event.END: (Status.SUCCESS, Status.FAILURE),
 }
+_IN_TICKS = (Event.START, *_ENDS)
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,6 +71,11 @@ class _Armed:
     breakpoint: Breakpoint
     nodes: frozenset[int]
     hits: int = 0
+
+    @property
+    def watches(self) -> bool:
+        """Whether it can only be seen in the middle of a tick."""
+        return self.breakpoint.event in _IN_TICKS
 
 
 class Debugger:
@@ -100,6 +106,13 @@ class Debugger:
         if not self._control.paused:
             return None
         return self._standing or Standing("paused", self._tick)
+
+    @property
+    def watches_nodes(self) -> bool:
+        """Whether it has to stand between nodes and their parents now."""
+        with self._lock:
+            walks = self._stride is not None and self._stride.step is not Step.TICK
+            return walks or bool(self._forced) or any(one.watches for one in self._armed)
 
     def add(self, text: str) -> int:
         """Set a breakpoint and return its number.
