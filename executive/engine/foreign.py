@@ -3,7 +3,8 @@
 Such a class says its ports as `PortInformation` and keeps its values on py_trees' blackboard,
 which is one for the whole process. Here every instance has keys of its own there, and values
 cross to and from the blackboard of the tree: inputs when the node starts, outputs when it
-succeeds.
+succeeds. Types are checked by our rules where the leaf reads and writes: py_trees' own take a
+bool for an int, and know neither None nor any generic type but lists.
 """
 
 import inspect
@@ -17,6 +18,7 @@ from py_trees.ports import NoDataAvailable, PortInformation, PortsMixin
 
 from executive.core.outcome import Outcome, failure, success
 from executive.core.skill import REQUIRED, Port, Skill, SkillRun
+from executive.engine.porttypes import accepts, check
 
 FAILED = "behaviour.failed"
 
@@ -76,6 +78,7 @@ class _ForeignSkill(Skill):
 def _constructor(behaviour: type[Behaviour]) -> Any:
     def construct(self: Any, **devices: object) -> None:
         self._leaf = behaviour(name=behaviour.__name__, **devices)
+        _let_ports_take_any_type(self._leaf)
         self._leaf.setup_ports()
 
     hints = typing.get_type_hints(behaviour.__init__)
@@ -127,10 +130,40 @@ def _key(leaf: Any, port: str) -> str:
     return str(client.remappings[client.absolute_name(port)])
 
 
+def _let_ports_take_any_type(leaf: Any) -> None:
+    """Give one leaf our own reading and writing of its ports."""
+
+    def get_input(port_name: str, default: Any = None) -> Any:
+        if port_name not in leaf.input_ports() or not Blackboard.exists(_key(leaf, port_name)):
+            return type(leaf).get_input(leaf, port_name, default)
+        return _checked(leaf, port_name, Blackboard.get(_key(leaf, port_name)))
+
+    def set_output(port_name: str, value: Any) -> None:
+        if port_name not in leaf.output_ports():
+            raise KeyError(f"{leaf.name}: Output port '{port_name}' not defined.")
+        Blackboard.set(_key(leaf, port_name), _checked(leaf, port_name, value))
+
+    def get_last_output(port_name: str) -> Any:
+        if port_name not in leaf.output_ports() or not Blackboard.exists(_key(leaf, port_name)):
+            return type(leaf).get_last_output(leaf, port_name)
+        return Blackboard.get(_key(leaf, port_name))
+
+    leaf.get_input, leaf.get_last_output = get_input, get_last_output
+    leaf._set_output = set_output
+
+
+def _checked(leaf: Any, port: str, value: object) -> object:
+    try:
+        check(value, leaf.get_port_type(port))
+    except ValueError as error:
+        raise TypeError(f"{type(leaf).__name__}: port {port!r}: {error}") from None
+    return value
+
+
 def _put(leaf: Any, port: str, value: object) -> None:
-    """Set a port, or leave it without data: py_trees' ports cannot hold None."""
+    """Set a port, or leave it without data where its type does not know None."""
     key = _key(leaf, port)
-    if value is not None:
+    if value is not None or accepts(leaf.get_port_type(port), type(None)):
         Blackboard.set(key, value)
     elif Blackboard.exists(key):
         Blackboard.unset(key)

@@ -1,13 +1,13 @@
 """py_trees 2.6 leaves with ports run unchanged in trees of ours."""
 
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import pytest
 from py_trees.behaviour import Behaviour
 from py_trees.blackboard import Blackboard
 from py_trees.common import Status
-from py_trees.ports import PortInformation, PortsMixin
-from toy_language import Journal, toy_skills, toy_types
+from py_trees.ports import NoDataAvailable, PortInformation, PortsMixin
+from toy_language import Colour, Journal, toy_skills, toy_types
 
 from executive.core.errors import DocumentError
 from executive.core.skill import input_ports
@@ -55,9 +55,10 @@ def no_leftovers():
     Blackboard.clear()
 
 
-def load(bench, root):
+def load(bench, root, **leaves):
     skills = toy_skills()
-    skills.add("scale", skill_from_behaviour(Scale))
+    for name, leaf in {"scale": Scale, **leaves}.items():
+        skills.add(name, skill_from_behaviour(leaf))
     return load_program(bench.write_root(root), skills=skills, types=toy_types())
 
 
@@ -104,6 +105,77 @@ def test_wiring_is_checked_like_that_of_any_skill(bench):
     messages = str(found.value)
     assert "input 'value': expected float, got 'x'" in messages
     assert "skill 'scale' has no input 'factr'; did you mean 'factor'?" in messages
+
+
+class Typed(PortsMixin, Behaviour, register=False):
+    """Note what comes in at ports of many types."""
+
+    INPUT_PORTS: ClassVar = {
+        "table": PortInformation(dict[str, list[int]], required=False),
+        "colour": PortInformation(Colour, default_value=Colour.RED),
+        "sizes": PortInformation(list[float], required=False),
+        "limit": PortInformation(float | None),
+        "count": PortInformation(int, default_value=1),
+        "answer": PortInformation(Any, required=False),
+    }
+    OUTPUT_PORTS: ClassVar = {
+        "seen": PortInformation(dict[str, Any]),
+        "number": PortInformation(int | None, required=False),
+    }
+
+    def update(self):
+        seen = {name: self.get_input(name) for name in ("colour", "limit", "count")}
+        for name in ("table", "sizes"):
+            try:
+                seen[name] = self.get_input(name)
+            except NoDataAvailable:
+                seen[name] = "no data"
+        self._set_output("seen", seen)
+        self._set_output("number", self.get_input("answer", 0) or None)
+        return Status.SUCCESS
+
+
+def seen_by_typed(bench, inputs):
+    root = f"{{skill: typed, in: {{{inputs}}}, out: {{seen: $s, number: $n}}}}"
+    bench.tree = build(load(bench, root, typed=Typed), devices={}, clock=bench.clock)
+    bench.tick()
+    return bench.tree.scope["s"]
+
+
+def test_ports_of_any_type_cross(bench):
+    assert seen_by_typed(bench, "limit: null, table: {a: [1, 2]}, colour: green, sizes: [1]") == {
+        "limit": None,
+        "table": {"a": [1, 2]},
+        "colour": Colour.GREEN,
+        "sizes": [1.0],
+        "count": 1,
+    }
+
+
+def test_inputs_that_are_not_wired_have_no_data(bench):
+    seen = seen_by_typed(bench, "limit: 2")
+    assert (seen["table"], seen["sizes"], seen["limit"]) == ("no data", "no data", 2.0)
+
+
+@pytest.mark.parametrize(
+    ("wired", "message"),
+    [
+        ("limit: 1, count: true", "input 'count': expected int, got True"),
+        ("limit: 1, table: {a: 3}", "input 'table': expected dict[str, list[int]] | None"),
+        ("limit: 1, colour: gren", "Colour has no value 'gren'; did you mean 'green'?"),
+        ("limit: '1'", "input 'limit': expected float | None, got '1'"),
+        ("count: 2", "skill 'typed' needs the input 'limit'"),
+    ],
+)
+def test_types_of_foreign_ports_are_checked_before_the_first_tick(bench, wired, message):
+    with pytest.raises(DocumentError) as found:
+        load(bench, f"{{skill: typed, in: {{{wired}}}}}", typed=Typed)
+    assert message in str(found.value)
+
+
+def test_a_foreign_leaf_may_not_write_a_bool_where_it_declares_an_int(bench):
+    with pytest.raises(TypeError, match=r"Typed: port 'number': expected int \| None, got True"):
+        seen_by_typed(bench, "limit: 1, answer: true")
 
 
 def test_a_node_without_ports_is_refused():
