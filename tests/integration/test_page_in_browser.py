@@ -108,7 +108,8 @@ def test_a_click_into_the_lanes_goes_there_and_selects_the_node(open_page, path)
     page, recording = open_page(path), Recording.open(path)
     box = page.locator("#codes").bounding_box()
     page.mouse.click(box["x"] + box["width"] / 2, box["y"] + 5)
-    page.wait_for_function("!document.querySelector('#place').value.includes('tick 6')")
+    last = f"tick {len(recording) - 1} "
+    page.wait_for_function(f"!document.querySelector('#place').value.startsWith('{last}')")
     assert abs(int(place(page)) - len(recording) / 2) < 5
     assert "selected" in page.locator(".row").first.get_attribute("class")
 
@@ -156,19 +157,29 @@ def test_tree_folds_and_filters(open_page, path):
 def test_a_live_run_is_followed_and_commanded(open_page, path, tmp_path):
     whole, growing = path.read_bytes(), tmp_path / "growing.mcap"
     growing.write_bytes(whole[: len(whole) // 2])
-    heard = threading.Event()
+    state = {"paused": False, "stopping": "", "standing": None, "breakpoints": [], "forced": {}}
 
     def pause(_):
-        heard.set()
-        return {"paused": True}
+        state.update(
+            paused=True, standing={"why": "test", "tick": 5, "node": "", "answered": False}
+        )
+        return state
 
-    with CommandServer(growing, {"pause": pause}):
+    def add(sent):
+        state["breakpoints"] = [{"number": 1, "text": sent["text"], "hits": 0}]
+        return state
+
+    commands = {"pause": pause, "break": add, "state": lambda _: state}
+    with CommandServer(growing, commands):
         page = open_page(growing)
-        assert page.text_content("#outcome") == "live"
+        page.wait_for_function("document.querySelector('#outcome').textContent === 'live'")
         before = int(place(page))
         page.click("[data-command=pause]")
         page.wait_for_function("document.querySelector('#outcome').textContent === 'paused'")
-        assert heard.is_set()
+        page.click("[data-tab=debug]")
+        page.fill("#debug input", "guard on failure")
+        page.click("#debug form button")
+        page.wait_for_selector("#debug li code:has-text('guard on failure')")
         with growing.open("ab") as file:
             file.write(whole[len(whole) // 2 :])
         page.wait_for_function("document.querySelector('#outcome').textContent === 'failure'")
@@ -177,3 +188,11 @@ def test_a_live_run_is_followed_and_commanded(open_page, path, tmp_path):
     )
     assert page.is_hidden("#commands")
     assert page.troubles == []
+
+
+def test_a_run_whose_process_is_gone_is_called_killed(open_page, path, tmp_path):
+    whole, cut = path.read_bytes(), tmp_path / "cut.mcap"
+    cut.write_bytes(whole[: len(whole) // 2])
+    page = open_page(cut)
+    page.wait_for_function("document.querySelector('#outcome').textContent === 'killed'")
+    assert page.is_hidden("#commands")

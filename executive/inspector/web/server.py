@@ -155,6 +155,19 @@ class _Answers:
         )
         return _json({"answer": answer})
 
+    def _progress(self) -> dict[str, object]:
+        self._session.refresh()
+        return {**self._session.progress(), "state": self._state()}
+
+    def _state(self) -> object:
+        """Return what the run's debugger says, None where no process runs it any more."""
+        if self._session.ended:
+            return None
+        try:
+            return send(self._session.path, "state")
+        except InputError:
+            return None
+
     async def live(self, socket: WebSocket) -> None:
         """Tell a page how far the run is, at once and whenever that has changed."""
         await socket.accept()
@@ -162,8 +175,7 @@ class _Answers:
         told: object = None
         try:
             while not gone.done():
-                await run_in_threadpool(self._session.refresh)
-                progress = self._session.progress()
+                progress = await run_in_threadpool(self._progress)
                 if progress != told:
                     told = progress
                     await socket.send_text(json.dumps(progress))

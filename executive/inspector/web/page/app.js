@@ -2,6 +2,7 @@
 
 import { command, find, follow, getRun, getTick } from "./api.js";
 import { initBoard } from "./board.js";
+import { initDebug, order } from "./debug.js";
 import { initGraph, seen } from "./graph.js";
 import { foldIdle, initLanes, refreshLanes } from "./lanes.js";
 import { initPanels } from "./panels.js";
@@ -35,6 +36,7 @@ async function start() {
   initBoard();
   initPicture();
   initGraph();
+  initDebug(note);
   initPanels((tab) => { if (tab === "graph") seen(); });
   onChange((names) => { if (names.has("tick")) load(); });
   wire();
@@ -65,8 +67,8 @@ function onProgress(progress) {
   const wasLast = store.to >= store.run.ticks - 1;
   Object.assign(store.run, progress);
   const last = Math.max(progress.ticks - 1, 0);
-  note("");
   showProgress();
+  change({ state: progress.state });
   const values = {};
   if (wasLast && last > store.to) Object.assign(values, { to: last });
   if (store.following) values.tick = last;
@@ -79,12 +81,15 @@ function onProgress(progress) {
 }
 
 function showProgress() {
-  const { report, ended } = store.run;
+  const { report, ended, state } = store.run;
   const badge = byId("outcome");
-  badge.textContent = ended ? report.outcome : store.paused ? "paused" : "live";
+  const live = state === null ? "killed" : state?.paused ? "paused" : "live";
+  badge.textContent = ended ? report.outcome : live;
   badge.className = `badge ${badge.textContent}`;
-  badge.title = report?.reason ?? "";
-  byId("commands").hidden = ended;
+  badge.title = report?.reason ?? state?.standing?.why ?? "";
+  byId("commands").hidden = ended || !state;
+  for (const button of document.querySelectorAll("[data-step], [data-command=resume]")) button.disabled = !state?.paused;
+  document.querySelector("[data-command=pause]").disabled = Boolean(state?.paused);
 }
 
 function go(tick) {
@@ -153,6 +158,7 @@ function wire() {
   };
   for (const button of document.querySelectorAll("[data-find]")) button.onclick = () => seek(button.dataset.find, 1);
   for (const button of document.querySelectorAll("[data-command]")) button.onclick = () => order(button.dataset.command);
+  for (const button of document.querySelectorAll("[data-step]")) button.onclick = () => order("step", { step: button.dataset.step });
   document.addEventListener("keydown", (event) => {
     if (event.target.closest("input, select, textarea") || event.ctrlKey || event.metaKey || event.altKey) return;
     const act = KEYS[event.key];
@@ -160,17 +166,6 @@ function wire() {
     event.preventDefault();
     act();
   });
-}
-
-async function order(name) {
-  try {
-    const state = await command(name);
-    change({ paused: Boolean(state?.paused) });
-    showProgress();
-    note("");
-  } catch (error) {
-    note(error.message);
-  }
 }
 
 function note(text) {

@@ -10,7 +10,7 @@ export const store = {
   filter: "",
   from: 0, to: 1,   // ticks that the lanes span
   following: false, // whether the last tick of a live run is shown
-  paused: false,
+  state: undefined, // what the debugger of a live run says; null where nothing runs it
 };
 
 const listeners = [];
