@@ -26,6 +26,9 @@ _STRING: Final = re.compile(r"(?:__cxx11::)?basic_string<.*>")
 _WRAPPED: Final = re.compile(r"(?:shared_ptr|optional|unique_ptr)<(.+)>")
 _QUALIFIERS: Final = re.compile(r"\b(?:std|BT|const)(?:::|\b)|[&*]")
 _JSON: Final = "json:"
+_CLASSES: Final[Mapping[str, type]] = MappingProxyType(
+    {"bool": bool, "int": int, "float": float, "str": str}
+)
 _CPP: Final[Mapping[str, str]] = MappingProxyType(
     {"bool": "bool", "float": "double", "int": "int", "str": "std::string", "any": ""}
 )
@@ -73,7 +76,7 @@ def read_literal(text: str, kind: str) -> object:
         InputError: It is no such value.
     """
     if text.startswith(_JSON):
-        return _from_json(text)
+        return _from_json(text, kind)
     if kind == "any":
         return _guessed(text)
     if kind == "str":
@@ -84,11 +87,15 @@ def read_literal(text: str, kind: str) -> object:
         raise InputError(f"expected {kind}, got {text!r}") from None
 
 
-def _from_json(text: str) -> object:
+def _from_json(text: str, kind: str) -> object:
     try:
-        return json.loads(text.removeprefix(_JSON))
+        value = json.loads(text.removeprefix(_JSON))
     except (ValueError, RecursionError) as error:
         raise InputError(f"is no JSON: {error}") from None
+    wanted = list if kind.startswith("list[") else _CLASSES.get(kind, object)
+    if not isinstance(value, wanted) or (isinstance(value, bool) and wanted in (int, float)):
+        raise InputError(f"expected {kind}, got {text!r}")
+    return value
 
 
 def _typed(text: str, kind: str) -> object:
