@@ -8,14 +8,23 @@ const tab = document.querySelector("[data-tab=debug]");
 
 let note = () => {};
 let drawn = "";
+let stoodAt = "";
 
 export function initDebug(noted) {
   note = noted;
   onChange((names) => {
     if (!names.has("state") && !names.has("node")) return;
     tab.hidden = !store.state;
+    if (names.has("state")) selectStanding(store.state?.standing);
     draw();
   });
+}
+
+// Selects the node that the run has just come to stand at.
+function selectStanding(place) {
+  const stood = `${place?.tick} ${place?.node}`;
+  if (place?.node && stood !== stoodAt) change({ node: store.run.nodes.findIndex((node) => node.path === place.node) });
+  stoodAt = stood;
 }
 
 // Sends a command; the answer is the state after it.
