@@ -3,13 +3,15 @@ import json
 import os
 import subprocess
 import sys
+import threading
+import time
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from executive.core.clock import Clock
-from executive.core.errors import InputError
+from executive.core.errors import DeviceError, InputError
 from executive.core.world import Cell
 from perception.camera import Camera
 from robots.dual_arm import PlannedDualArm
@@ -114,6 +116,36 @@ def test_a_stop_brings_the_arms_to_rest(cell, stop):
     now_s = cell.clock.now_s()
     getattr(cell, stop)()
     assert cell.clock.now_s() == now_s
+
+
+def test_an_emergency_stop_from_another_thread_stops_a_world_that_goes_on(cell):
+    arms = start_motion(cell)
+    braked_s = []
+
+    def light_curtain():
+        while cell.clock.now_s() < 0.2:
+            time.sleep(0.001)
+        cell.emergency_stop()
+        braked_s.append(cell.clock.now_s())
+
+    thread = threading.Thread(target=light_curtain)
+    thread.start()
+    cell.clock.sleep_until(30.0)  # the thread that ticks is far away
+    thread.join(30.0)
+    assert braked_s[0] < 5.0
+    assert cell.clock.now_s() == pytest.approx(30.0)
+    assert not arms.moving()
+    with pytest.raises(DeviceError, match="an emergency stop was made"):
+        start_motion(cell)
+
+
+def test_an_emergency_stop_waits_for_nobody_who_hangs(cell):
+    start_motion(cell)
+    cell.clock.sleep_until(0.3)
+    thread = threading.Thread(target=cell.emergency_stop)  # this one ticks, and does nothing
+    thread.start()
+    thread.join(30.0)
+    assert not cell.driver.state().moving
 
 
 def test_the_camera_sees_the_cable_and_what_stands_in_the_way(cell):
