@@ -90,6 +90,11 @@ class Spot:
         """Children with their stops."""
         return tuple(zip(self.node.children, self.stops, strict=True))
 
+    def defines(self, method: str) -> bool:
+        """Return whether the node does something where py_trees calls a method of it."""
+        own = method in vars(self.node)
+        return own or getattr(type(self.node), method) is not getattr(Behaviour, method)
+
     def answers(self) -> tuple[Event, Event, Event]:
         """Return what it may answer: running, success, failure."""
         return (
@@ -103,6 +108,14 @@ def stop_of_leaf(spot: Spot) -> StopCall:
     """Stop a node without children."""
     node, log, events = spot.node, spot.log, spot.log.events
     stopped = spot.index, NodeStatus.INVALID
+
+    def stop_silent(status: Status) -> None:
+        node.status = status
+        if status is INVALID:
+            events.append(stopped)
+
+    if not spot.defines("terminate"):
+        return stop_silent
 
     def stop(status: Status) -> None:
         try:
@@ -134,11 +147,12 @@ def stop_of_decorator(spot: Spot) -> StopCall:
     """Stop a decorator, and then its child."""
     node, log, events = spot.node, spot.log, spot.log.events
     stopped = spot.index, NodeStatus.INVALID
-    ((child, stop_child),) = spot.children
+    ((child, stop_child),), terminates = spot.children, spot.defines("terminate")
 
     def stop(status: Status) -> None:
         try:
-            node.terminate(status)
+            if terminates:
+                node.terminate(status)
         except BaseException:
             log.note_raised(node, terminating=True)
             raise
@@ -164,11 +178,11 @@ def tick_of_leaf(spot: Spot) -> TickCall:
     """Tick a node by its `initialise` and `update` alone."""
     node, stop, log, note = spot.node, spot.stop, spot.log, spot.log.events.append
     running, success, failure = spot.answers()
-    broken = _broken(spot)
+    broken, initialises = _broken(spot), spot.defines("initialise")
 
     def tick() -> Status:
         try:
-            if node.status is not RUNNING:
+            if initialises and node.status is not RUNNING:
                 node.initialise()
             status = node.update()
         except BaseException:
@@ -241,7 +255,7 @@ def tick_of_gated(spot: Spot) -> TickCall:
 def tick_of_sequence(spot: Spot) -> TickCall:
     """Tick children in order up to the first that does not succeed."""
     node, log, finish = spot.node, spot.log, _finish(spot)
-    children, ticks = spot.children, tuple(spot.ticks)
+    children, ticks, initialises = spot.children, tuple(spot.ticks), spot.defines("initialise")
     count, place = len(children), {id(child): i for i, (child, _) in enumerate(children)}
 
     def begin() -> int:
@@ -251,7 +265,8 @@ def tick_of_sequence(spot: Spot) -> TickCall:
         node.current_child = children[0][0] if children else None
         if node.status is not RUNNING:
             _forget(children)
-            node.initialise()
+            if initialises:
+                node.initialise()
         return 0
 
     def tick() -> Status:
@@ -277,14 +292,15 @@ def tick_of_sequence(spot: Spot) -> TickCall:
 def tick_of_selector(spot: Spot) -> TickCall:
     """Tick children in order up to the first that does not fail."""
     node, log, finish = spot.node, spot.log, _finish(spot)
-    children, ticks = spot.children, tuple(spot.ticks)
+    children, ticks, initialises = spot.children, tuple(spot.ticks), spot.defines("initialise")
     count, place = len(children), {id(child): i for i, (child, _) in enumerate(children)}
 
     def begin() -> int:
         """Return where to begin."""
         if node.status is not RUNNING:
             node.current_child = children[0][0] if children else None
-            node.initialise()
+            if initialises:
+                node.initialise()
         if not (node.memory and children):
             return 0
         i = place[id(node.current_child)]

@@ -55,6 +55,7 @@ class TreeProbe:
         self._events: list[Event] = []
         self._visited: tuple[int, ...] = ()
         self._plain = False
+        self._inner = tuple(bool(behaviour.children) for behaviour in self.behaviours)
         # Other inner nodes never decide anything themselves.
         self._speaks = tuple(
             not behaviour.children or hasattr(behaviour, "outcome") for behaviour in self.behaviours
@@ -183,16 +184,23 @@ class TreeProbe:
         Conditions of a reactive branch answer the same in every tick; only their first
         answer is worth a record, the visits tell the rest.
         """
+        told, before = self._told, number - 1
         for node, status in self._events:
-            if not self._speaks[node] or status is RUNNING or status is INVALID:
+            if status is RUNNING or status is INVALID or not self._speaks[node]:
                 continue
             reason = self._reason(node)
             if reason is not None:
                 self.reasons[node] = reason
-            elif self.reasons.pop(node, None) is None and self.behaviours[node].children:
+            elif self.reasons.pop(node, None) is None and self._inner[node]:
                 continue
-            last, self._told[node] = self._told.get(node), (number, status, reason)
-            if last is None or last[:2] != (number - 1, status) or not _alike(last[2], reason):
+            last = told.get(node)
+            told[node] = number, status, reason
+            if (
+                last is None
+                or last[0] != before
+                or last[1] is not status
+                or not _alike(last[2], reason)
+            ):
                 yield NodeOutcome(node, status, reason)
 
     def _reason(self, node: int) -> Reason | None:
