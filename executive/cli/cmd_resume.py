@@ -119,7 +119,7 @@ def _prepared(
         recording=request.record or default_recording(header.mission, header.seed),
         resumption=taken_up.resumption,
     )
-    return Prepared(plan, taken_up.tree, cell)
+    return Prepared(plan, taken_up.tree, taken_up.cell)
 
 
 def _say_where(info: CheckpointInfo, notes: tuple[str, ...]) -> None:

@@ -73,8 +73,7 @@ class Gated(Decorator):
 class Retry(Gated):
     """Runs the child again when it fails; at most one attempt in a tick."""
 
-    MEMORY = ("_failures", "_times", "_delay_s")
-    TIMES = ("_resume_s",)
+    MEMORY = ("_failures", "_times", "_delay_s", "_resume_s")
 
     def __init__(
         self,
@@ -123,8 +122,7 @@ class Retry(Gated):
 class Repeat(Gated):
     """Runs the child again when it succeeds; at most one round in a tick."""
 
-    MEMORY = ("_successes", "_times", "_delay_s")
-    TIMES = ("_resume_s",)
+    MEMORY = ("_successes", "_times", "_delay_s", "_resume_s")
 
     def __init__(
         self, name: str, child: Behaviour, *, times: Number, delay_s: Number = 0.0, clock: Clock
@@ -156,8 +154,7 @@ class Repeat(Gated):
 class Timeout(Gated):
     """Halts the child and fails when it is not done in time."""
 
-    MEMORY = ("_seconds",)
-    TIMES = ("_deadline_s",)
+    MEMORY = ("_seconds", "_deadline_s")
 
     def __init__(self, name: str, child: Behaviour, *, seconds: Number, clock: Clock) -> None:
         """Allow a number of seconds on the clock."""
@@ -180,8 +177,7 @@ class Timeout(Gated):
 class Cooldown(Gated):
     """Fails without starting the child for a while after it has finished."""
 
-    MEMORY = ("_seconds",)
-    TIMES = ("_ready_s",)
+    MEMORY = ("_seconds", "_ready_s")
 
     def __init__(self, name: str, child: Behaviour, *, seconds: Number, clock: Clock) -> None:
         """Rest for a number of seconds on the clock."""

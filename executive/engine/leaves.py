@@ -15,7 +15,7 @@ from executive.engine.supervision import Supervision
 class Wait(Leaf):
     """Runs for a while on the clock, then succeeds."""
 
-    TIMES = ("_due_s",)
+    MEMORY = ("_due_s",)
 
     def __init__(
         self, name: str, path: str, seconds: Number, clock: Clock, supervision: Supervision

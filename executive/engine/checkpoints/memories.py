@@ -1,16 +1,12 @@
 """What nodes remember from one tick to the next, taken down and given back by name.
 
-A class says itself which of its attributes these are:
-
-- `MEMORY` names what it keeps as it is: counts, lists, statuses, flags, children of its own;
-- `TIMES` names moments on the mission's clock, None allowed.
-
-py_trees' own classes are listed here. A test holds every kind of node to its list.
+A class says itself which of its attributes these are, in `MEMORY`: counts, lists, statuses,
+flags, moments on the mission's clock, children of its own. py_trees' own classes are listed
+here. A test holds every kind of node to its list.
 """
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any
 
 from py_trees.behaviour import Behaviour
 from py_trees.composites import Composite
@@ -18,9 +14,9 @@ from py_trees.decorators import OneShot
 
 Memory = Mapping[str, object]
 
-_OF_PY_TREES: Mapping[str, Mapping[type[Behaviour], tuple[str, ...]]] = {
-    "MEMORY": {OneShot: ("final_status",), Composite: ("current_child",)},
-    "TIMES": {},
+_OF_PY_TREES: Mapping[type[Behaviour], tuple[str, ...]] = {
+    OneShot: ("final_status",),
+    Composite: ("current_child",),
 }
 
 
@@ -33,38 +29,29 @@ class Child:
 
 def remembers(node: Behaviour) -> bool:
     """Return whether a node says what it remembers, be it nothing, so that it can go on."""
-    return any(hasattr(node, listing) for listing in _OF_PY_TREES)
+    return hasattr(node, "MEMORY") or isinstance(node, tuple(_OF_PY_TREES))
 
 
 def memory_of(node: Behaviour) -> dict[str, object]:
     """Return what a node remembers; most remember nothing."""
-    names = (*_listed(node, "MEMORY"), *_listed(node, "TIMES"))
-    return {name: _taken_down(getattr(node, name), node) for name in names}
+    return {name: _taken_down(getattr(node, name), node) for name in _listed(node)}
 
 
-def recall(node: Behaviour, memory: Memory, shift_s: float) -> None:
-    """Give a node what it remembered.
-
-    Args:
-        node: The node, fresh from the builder.
-        memory: As `memory_of` has returned it.
-        shift_s: What the clock shows now, less what it showed then [s].
+def recall(node: Behaviour, memory: Memory) -> None:
+    """Give a node, fresh from the builder, what it remembered.
 
     Raises:
         KeyError: It is the memory of another kind of node.
         IndexError: It is that of a node with more children.
     """
-    for name in _listed(node, "MEMORY"):
+    for name in _listed(node):
         value = memory[name]
         setattr(node, name, node.children[value.place] if isinstance(value, Child) else value)
-    for name in _listed(node, "TIMES"):
-        time_s: Any = memory[name]
-        setattr(node, name, None if time_s is None else time_s + shift_s)
 
 
-def _listed(node: Behaviour, listing: str) -> Iterator[str]:
-    yield from getattr(node, listing, ())
-    for kind, names in _OF_PY_TREES[listing].items():
+def _listed(node: Behaviour) -> Iterator[str]:
+    yield from getattr(node, "MEMORY", ())
+    for kind, names in _OF_PY_TREES.items():
         if isinstance(node, kind):
             yield from names
 

@@ -20,6 +20,7 @@ from executive.engine.blackboard import Write
 from executive.engine.builder import BuiltTree, NodeInfo
 from executive.engine.checkpoints.chance import generator_state
 from executive.engine.checkpoints.choosing import CheckpointInfo
+from executive.engine.checkpoints.later import LaterCell
 from executive.engine.checkpoints.memories import recall
 from executive.engine.checkpoints.messages import CheckpointMessage
 from executive.engine.recording.decoding import decode
@@ -29,7 +30,7 @@ from executive.engine.ticks import NodeOutcome
 Decode = Callable[[Any], object]
 
 
-def restore_cell(info: CheckpointInfo, cell: Cell, *, as_it_stands: bool) -> bool:
+def restored_cell(info: CheckpointInfo, cell: Cell, *, as_it_stands: bool) -> Cell:
     """Put a cell and its devices back, or take the cell as it stands.
 
     Args:
@@ -39,16 +40,17 @@ def restore_cell(info: CheckpointInfo, cell: Cell, *, as_it_stands: bool) -> boo
             is held and nothing moves, as it was then.
 
     Returns:
-        Whether it was put back.
+        The cell to go on in, whose clock shows what it showed then.
 
     Raises:
         InputError: It cannot be put back.
     """
-    snapshot, put_back = info.message.cell, False
+    snapshot = info.message.cell
     if snapshot is not None and isinstance(cell, RestorableCell):
         cell.restore(base64.b64decode(snapshot))
-        put_back = True
-    elif not as_it_stands:
+    elif as_it_stands:
+        cell = LaterCell(cell, info.message.progress.time_s)
+    else:
         raise InputError(
             f"{info}: the cell cannot be put back into the state of then; try --as-it-stands "
             f"once all is in the cell as it was before {info.path} started: nothing is held, "
@@ -56,7 +58,7 @@ def restore_cell(info: CheckpointInfo, cell: Cell, *, as_it_stands: bool) -> boo
         )
     for name, memento in info.message.devices.items():
         _restore_device(name, cell.devices.get(name), memento)
-    return put_back
+    return cell
 
 
 def restore_tree(
@@ -94,10 +96,8 @@ def restore_tree(
             + "\n".join(f"  {each}" for each in lost)
             + "\ntry --anyway to go on without these values"
         )
-    progress = info.message.progress
-    shift_s = tree.clock.now_s() - (progress.time_s - progress.paused_s)
     for index, memory in info.message.memories.items():
-        _restore_node(tree.nodes[index], memory, decoded, shift_s)
+        _restore_node(tree.nodes[index], memory, decoded)
     _restore_statuses(info.message, tree.nodes)
     for end in info.message.outcomes:
         node: Any = tree.nodes[end.node].behaviour
@@ -139,12 +139,10 @@ def _decoded(writes: Sequence[Write], decoded: Decode) -> tuple[list[Write], lis
     return found, lost
 
 
-def _restore_node(
-    info: NodeInfo, memory: Mapping[str, JsonValue], decoded: Decode, shift_s: float
-) -> None:
+def _restore_node(info: NodeInfo, memory: Mapping[str, JsonValue], decoded: Decode) -> None:
     try:
         values = {name: decoded(value) for name, value in memory.items()}
-        recall(info.behaviour, values, shift_s)
+        recall(info.behaviour, values)
     except (RecordingError, KeyError, IndexError, TypeError) as cause:
         raise InputError(
             f"{info.path}: what it remembered cannot be given back; got {cause!r}; expected what "

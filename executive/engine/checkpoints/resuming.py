@@ -14,9 +14,8 @@ from executive.engine.checkpoints.compatible import (
     require_same_nodes,
     require_same_sources,
 )
-from executive.engine.checkpoints.messages import Progress
 from executive.engine.checkpoints.past import Resumption, past_of
-from executive.engine.checkpoints.restoring import restore_cell, restore_tree
+from executive.engine.checkpoints.restoring import restore_tree, restored_cell
 from executive.engine.loader import Mission, load_mission
 from executive.engine.mission_run import recorded_nodes, versions
 from executive.engine.recording.messages import MissionHeader, ResumedFrom
@@ -44,11 +43,13 @@ class TakenUp:
 
     Attributes:
         tree: Its tree.
+        cell: The cell that it goes on in.
         resumption: What `run_mission` goes on from.
         notes: What is not as it was, in words.
     """
 
     tree: BuiltTree
+    cell: Cell
     resumption: Resumption
     notes: tuple[str, ...]
 
@@ -102,7 +103,7 @@ def take_up(
         InputError: That cannot be done; says why.
     """
     header, then = recording.header, info.message.progress
-    put_back = restore_cell(info, cell, as_it_stands=consent.as_it_stands)
+    cell = restored_cell(info, cell, as_it_stands=consent.as_it_stands)
     tree = build(
         mission,
         devices=cell.devices,
@@ -111,10 +112,9 @@ def take_up(
         seed=header.seed,
     )
     require_same_nodes(header.nodes, recorded_nodes(tree.nodes))
-    if put_back:
-        tree.clock.skip(then.paused_s)
+    tree.clock.skip(then.paused_s)
     lost = restore_tree(info, recording, tree, classes, anyway=consent.anyway)
-    past = past_of(recording, info.message, _moved(then, cell.clock.now_s() - then.time_s))
+    past = past_of(recording, info.message)
     origin = ResumedFrom(
         file=str(recording.path),
         checkpoint=info.message.number,
@@ -122,15 +122,4 @@ def take_up(
         tick=then.tick,
         time_s=then.time_s,
     )
-    return TakenUp(tree, Resumption(origin, recording, past), lost)
-
-
-def _moved(progress: Progress, shift_s: float) -> Progress:
-    """Return the same on a clock that shows `shift_s` more."""
-    return progress.model_copy(
-        update={
-            "time_s": progress.time_s + shift_s,
-            "start_s": progress.start_s + shift_s,
-            "grid_s": progress.grid_s + shift_s,
-        }
-    )
+    return TakenUp(tree, cell, Resumption(origin, recording, past), lost)

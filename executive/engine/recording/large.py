@@ -42,7 +42,6 @@ class LargeValues:
             IMAGES_TOPIC: {},
             ARRAYS_TOPIC: {},
         }
-        self._counts = {IMAGES_TOPIC: 0, ARRAYS_TOPIC: 0}
         self._stored_s: dict[str, float] = {}
         self._key, self._time_s = "", 0.0
 
@@ -58,21 +57,21 @@ class LargeValues:
         """Return the number of an array, None where it is left out."""
         return self._number(ARRAYS_TOPIC, array)
 
-    def carry(self, topic: str, number: int) -> bool:
-        """Take note of a message of an earlier recording; return whether it was a large value."""
-        if topic not in self._counts:
-            return False
-        self._counts[topic] = max(self._counts[topic], number + 1)
-        return True
+    def carry(self, topic: str, number: int, message: bytes) -> None:
+        """Take note of a message of an earlier recording, so that it is not stored again."""
+        if topic == IMAGES_TOPIC:
+            image = image_of(base64.b64decode(json.loads(message)["data"]))
+            self._numbers[topic][_content(image)] = number
+        elif topic == ARRAYS_TOPIC:
+            self._numbers[topic][_content(array_of(message))] = number
 
     def _number(self, topic: str, array: Array) -> int | None:
         numbers = self._numbers[topic]
-        content = (array.dtype.name, array.shape, array_hash(array))
+        content = _content(array)
         if content not in numbers:
             if not self._allowed():
                 return None
-            numbers[content] = self._counts[topic]
-            self._counts[topic] += 1
+            numbers[content] = len(numbers)
             self._store(topic, array, numbers[content])
         return numbers[content]
 
@@ -92,6 +91,10 @@ class LargeValues:
             return
         data = _image_message(array, self._time_s)
         self._write(topic, "foxglove.CompressedImage", COMPRESSED_IMAGE_SCHEMA, data, number)
+
+
+def _content(array: Array) -> tuple[object, ...]:
+    return array.dtype.name, array.shape, array_hash(array)
 
 
 def array_of(message: bytes) -> Array:

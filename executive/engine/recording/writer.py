@@ -142,7 +142,7 @@ class RecordingWriter:
             tick = TickMessage.model_validate_json(message.data)
             self._ticks.follow(tick)
             self._time_s = tick.time_s
-        self._large.carry(topic, message.sequence)
+        self._large.carry(topic, message.sequence, message.data)
         self._parts.add(
             Item(
                 topic,
