@@ -12,7 +12,7 @@ export OPENBLAS_NUM_THREADS ?= 1
 export MKL_NUM_THREADS ?= 1
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test check fmt fmt-check lint types layers docs pages freeze clean
+.PHONY: help setup demo test check fmt fmt-check lint types layers trees docs pages freeze clean
 
 help: ## List these words
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "  make %-12s %s\n", $$1, $$2}' $(firstword $(MAKEFILE_LIST))
@@ -54,14 +54,16 @@ demo: setup ## Untie a knotted cable with the simulated YuMi, and record it
 test: setup ## Run all tests
 	$(BIN)/pytest -n auto
 
-check: fmt-check lint types layers docs test ## Everything that must hold before a commit lands
+check: fmt-check lint types layers trees docs test ## Everything that must hold before a commit lands
 
-fmt: setup ## Format the code
+fmt: setup ## Format the code and the trees
 	$(BIN)/ruff format
 	$(BIN)/ruff check --fix --select I
+	$(BIN)/cellwright fmt trees
 
 fmt-check: setup
 	$(BIN)/ruff format --check
+	$(BIN)/cellwright fmt --check trees
 
 lint: setup ## Lint the code
 	$(BIN)/ruff check
@@ -71,6 +73,10 @@ types: setup ## Check types, strictly
 
 layers: setup ## Check who may import whom
 	$(BIN)/lint-imports
+
+trees: setup ## Check and lint the trees
+	$(BIN)/cellwright check trees
+	$(BIN)/cellwright lint trees
 
 docs: setup ## Build the documentation into site/; a warning is an error
 	$(BIN)/sphinx-build --quiet --fail-on-warning --keep-going -j auto docs site

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Mapping
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Final
 
-from executive.engine.document import ParallelBody, SubtreeNode
+from executive.engine.document import ObserveBody, ParallelBody, SubtreeNode
 from executive.engine.outline import NodeSpec
 
 if TYPE_CHECKING:
@@ -65,6 +65,26 @@ def _parallel(node: NodeSpec, ends: list[Ends]) -> Ends:
     return _either(success for success, _ in ends), _NONE
 
 
+def _if_then_else(_node: NodeSpec, ends: list[Ends]) -> Ends:
+    condition, then = ends[:2]
+    success = _both([condition[0], then[0]])
+    if len(ends) == 2:
+        return success, _either([_both([condition[0], then[1]]), condition[1]])
+    otherwise = ends[2]
+    return (
+        _either([success, _both([condition[1], otherwise[0]])]),
+        _either([_both([condition[0], then[1]]), _both([condition[1], otherwise[1]])]),
+    )
+
+
+def _one_of(_node: NodeSpec, ends: list[Ends]) -> Ends:
+    return _either(success for success, _ in ends), _NONE
+
+
+def _early_success(_node: NodeSpec, ends: list[Ends]) -> Ends:
+    return _either([ends[0][0], _NONE]), ends[0][1]
+
+
 def _same(_node: NodeSpec, ends: list[Ends]) -> Ends:
     return ends[0]
 
@@ -97,6 +117,10 @@ COMBINED: Final[Mapping[str, Callable[[NodeSpec, list[Ends]], Ends]]] = MappingP
         "selector": _selector,
         "reactive_selector": _selector,
         "parallel": _parallel,
+        "if_then_else": _if_then_else,
+        "while_do_else": _if_then_else,
+        "switch": _one_of,
+        "reactive_switch": _one_of,
         "retry": _same,
         "repeat": _same,
         "timeout": _may_fail_early,
@@ -106,6 +130,9 @@ COMBINED: Final[Mapping[str, Callable[[NodeSpec, list[Ends]], Ends]]] = MappingP
         "inverter": _inverted,
         "force_success": _forced_success,
         "force_failure": _forced_failure,
+        "running_is_success": _early_success,
+        "running_is_failure": _may_fail_early,
+        "observe": _same,
     }
 )
 """Every kind with children; a test holds it against the language."""
@@ -144,7 +171,11 @@ class Certain:
             unknown: Ends = (_NONE, _NONE)
             combine = COMBINED.get(node.model.kind)
             ends = [self._ends(child) for child in node.children]
-            return combine(node, ends) if combine else unknown
+            success, failure = combine(node, ends) if combine else unknown
+            if isinstance(node.model, ObserveBody):
+                own = frozenset(gives.key for gives in self._subject.wirings[node].ends)
+                return _both([success, own]), _both([failure, own])
+            return success, failure
         given = frozenset(gives.key for gives in self._subject.wirings[node].gives)
         if isinstance(node.model, SubtreeNode):
             given = self._given(node.model)
@@ -169,6 +200,8 @@ class Certain:
             success = _either([success, _NONE])
         if model.if_ is not None or model.while_ is not None:
             failure = _either([failure, _NONE])
-        return _both([success, frozenset(model.on_success or ())]), _both(
-            [failure, frozenset(model.on_failure or ())]
+        always = frozenset((model.on_start or {}) | (model.finally_ or {}))
+        return (
+            _both([success, always, frozenset(model.on_success or ())]),
+            _both([failure, always, frozenset(model.on_failure or ())]),
         )

@@ -15,6 +15,8 @@ _SAID = {"succeed": "always fails", "fail": "always succeeds"}
 
 def _unreachable(subject: Subject) -> Iterator[Spot]:
     for node, _ in subject.nodes():
+        if traits(node).chooses:
+            yield from _never_taken(subject, node)
         wanted = traits(node).goes_on_after
         if not wanted:
             continue
@@ -23,6 +25,15 @@ def _unreachable(subject: Subject) -> Iterator[Spot]:
                 says = f"never asked: {child.name!r} before it {_SAID[wanted]}"
                 yield Spot(later, f"{says}; drop it, or put it first")
                 break
+
+
+def _never_taken(subject: Subject, node: NodeSpec) -> Iterator[Spot]:
+    condition, *branches = node.children
+    may = subject.outcomes.may(condition)
+    for branch, taken in zip(branches, (may.succeed, may.fail), strict=False):
+        if not taken:
+            says = "always fails" if not may.succeed else "always succeeds"
+            yield Spot(branch, f"never run: {condition.name!r} {says}; drop one of the two")
 
 
 def _constant(subject: Subject) -> Iterator[Spot]:
@@ -77,14 +88,16 @@ def _restarted(subject: Subject) -> Iterator[Spot]:
     for node, _ in subject.nodes():
         if not traits(node).reactive:
             continue
-        for i, child in enumerate(node.children):
-            goes_on = getattr(subject.outcomes.may(child), traits(node).goes_on_after)
+        asked = node.children[:1] if traits(node).chooses else node.children
+        for i, child in enumerate(asked):
+            goes_on = traits(node).chooses or getattr(
+                subject.outcomes.may(child), traits(node).goes_on_after
+            )
             runs = _first_running(subject, node.children[i + 1 :])
             skill = subject.outcomes.running_again(child, acts)
             if goes_on and runs and skill:
                 message = f"{skill} is run again in every tick while {runs!r} runs"
-                plain = node.model.kind.removeprefix("reactive_")
-                yield Spot(child, f"{message}; try {plain}, or run_once around it")
+                yield Spot(child, f"{message}; try a block that goes on, or run_once around it")
 
 
 def _first_running(subject: Subject, nodes: Sequence[NodeSpec]) -> str:

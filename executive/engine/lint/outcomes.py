@@ -13,7 +13,15 @@ from typing import Any, Final
 from executive.core.errors import InputError
 from executive.core.registry import Registry
 from executive.core.skill import Skill
-from executive.engine.document import ForEachBody, NodeModel, ParallelBody, RetryBody, WhenNode
+from executive.engine.document import (
+    CasesBody,
+    ChanceNode,
+    ForEachBody,
+    NodeModel,
+    ParallelBody,
+    RetryBody,
+    WhenNode,
+)
 from executive.engine.expression import parse_expression
 from executive.engine.outline import NodeSpec, TreeSpec
 
@@ -39,10 +47,11 @@ class Traits:
         may: Its answers, from what it says and the answers of its children.
         goes_on_after: The answer of a child after which the next one is asked: `succeed` for
             a sequence, `fail` for a selector, empty where children are not asked in turn.
-        reactive: Whether it begins with the first child in every tick.
+        reactive: Whether it asks its first child, and those after it, anew in every tick.
         concurrent: Whether its children run side by side.
         again_after: The answer of its child after which it runs it again, empty for never.
         ignores: Answers of its child that make no difference to it.
+        chooses: Whether its first child decides which of the others is run.
         limits: Whether it may halt its child by itself.
         once: Whether it keeps its child from being run a second time.
     """
@@ -53,6 +62,7 @@ class Traits:
     concurrent: bool = False
     again_after: str = ""
     ignores: frozenset[str] = frozenset()
+    chooses: bool = False
     limits: bool = False
     once: bool = False
 
@@ -83,8 +93,21 @@ def _when(model: WhenNode, _children: Sequence[May]) -> May:
     return May(succeed=value is not False, fail=value is not True, run=False)
 
 
+def _chance(model: ChanceNode, _children: Sequence[May]) -> May:
+    likely = number(model.chance)
+    return May(succeed=likely != 0, fail=likely != 1, run=False)
+
+
 def _at_once(_model: NodeModel, _children: Sequence[May]) -> May:
     return May(succeed=True, fail=False, run=False)
+
+
+def _in_the_end(_model: NodeModel, _children: Sequence[May]) -> May:
+    return May(succeed=True, fail=False, run=True)
+
+
+def _never(_model: NodeModel, _children: Sequence[May]) -> May:
+    return May(succeed=False, fail=True, run=False)
 
 
 def _sequence(_model: NodeModel, children: Sequence[May]) -> May:
@@ -110,13 +133,31 @@ def _reached(children: Sequence[May], goes_on_after: str) -> Sequence[May]:
     return children[: stops[0] + 1] if stops else children
 
 
-def _parallel(model: ParallelBody, children: Sequence[May]) -> May:
-    needed = all if model.succeed == "all" else any
+def _if_then_else(_model: NodeModel, children: Sequence[May]) -> May:
+    condition, then = children[:2]
+    otherwise = children[2] if len(children) > 2 else May(succeed=False, fail=True, run=False)
+    taken = [then] * condition.succeed + [otherwise] * condition.fail
+    may = _one_of(taken)
+    return May(may.succeed, may.fail, may.run or condition.run)
+
+
+def _switch(model: CasesBody, children: Sequence[May]) -> May:
+    may = _one_of(children)
+    return May(may.succeed, may.fail or model.default is None, may.run)
+
+
+def _one_of(children: Sequence[May]) -> May:
     return May(
-        succeed=needed(child.succeed for child in children),
+        succeed=any(child.succeed for child in children),
         fail=any(child.fail for child in children),
         run=any(child.run for child in children),
     )
+
+
+def _parallel(model: ParallelBody, children: Sequence[May]) -> May:
+    needed = all if model.succeed == "all" else any
+    may = _one_of(children)
+    return May(needed(child.succeed for child in children), may.fail, may.run)
 
 
 def _retry(model: RetryBody, children: Sequence[May]) -> May:
@@ -162,6 +203,16 @@ def _forced_failure(_model: NodeModel, children: Sequence[May]) -> May:
     return May(False, child.succeed or child.fail, child.run)
 
 
+def _running_is_success(_model: NodeModel, children: Sequence[May]) -> May:
+    (child,) = children
+    return May(child.succeed or child.run, child.fail, run=False)
+
+
+def _running_is_failure(_model: NodeModel, children: Sequence[May]) -> May:
+    (child,) = children
+    return May(child.succeed, child.fail or child.run, run=False)
+
+
 _ENDS: Final = frozenset({"succeed", "fail"})
 TRAITS: Final[Mapping[str, Traits]] = MappingProxyType(
     {
@@ -169,11 +220,20 @@ TRAITS: Final[Mapping[str, Traits]] = MappingProxyType(
         "subtree": Traits(_anything),
         "when": Traits(_when),
         "set": Traits(_at_once),
+        "unset": Traits(_at_once),
+        "wait": Traits(_in_the_end),
+        "wait_for": Traits(_in_the_end),
+        "fail": Traits(_never),
+        "chance": Traits(_chance),
         "sequence": Traits(_sequence, goes_on_after="succeed"),
         "reactive_sequence": Traits(_sequence, goes_on_after="succeed", reactive=True),
         "selector": Traits(_selector, goes_on_after="fail"),
         "reactive_selector": Traits(_selector, goes_on_after="fail", reactive=True),
         "parallel": Traits(_parallel, concurrent=True),
+        "if_then_else": Traits(_if_then_else, chooses=True),
+        "while_do_else": Traits(_if_then_else, chooses=True, reactive=True),
+        "switch": Traits(_switch),
+        "reactive_switch": Traits(_switch),
         "retry": Traits(_retry, again_after="fail"),
         "repeat": Traits(_repeat, again_after="succeed"),
         "timeout": Traits(_may_fail, limits=True),
@@ -183,6 +243,9 @@ TRAITS: Final[Mapping[str, Traits]] = MappingProxyType(
         "inverter": Traits(_inverted),
         "force_success": Traits(_forced_success, ignores=_ENDS),
         "force_failure": Traits(_forced_failure, ignores=_ENDS),
+        "running_is_success": Traits(_running_is_success),
+        "running_is_failure": Traits(_running_is_failure),
+        "observe": Traits(_same),
     }
 )
 """Every kind of node; a test holds it against the language."""

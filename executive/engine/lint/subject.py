@@ -82,8 +82,8 @@ class Subject:
         )
 
     def reads(self, node: NodeSpec) -> frozenset[str]:
-        """Return the keys that a node itself reads or asks about."""
-        uses = [use.value for use in self.wirings[node].uses]
+        """Return the keys that a node itself reads or asks about; to unset one is neither."""
+        uses = [use.value for use in self.wirings[node].uses if use.at != ("unset",)]
         return frozenset().union(*(value.reads | value.asks for value in uses))
 
 
