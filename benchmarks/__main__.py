@@ -10,6 +10,7 @@ from benchmarks.report import write_page
 
 BENCHMARKS = {
     "certificates": ("benchmarks.certificates", "knotted or not, with proofs that are replayed"),
+    "checking": ("benchmarks.checking", "check, lint and fmt: time over that of Python itself"),
     "cable-physics": ("benchmarks.cable_physics", "speed of the cable beside PyBullet; knots kept"),
     "ticks": ("benchmarks.ticks", "speed of ticks beside py_trees; cost of a recording"),
     "tracing": ("benchmarks.tracing", "tracers on drawn scenes with exact truth"),
