@@ -23,6 +23,7 @@ from py_trees.behaviour import Behaviour
 from py_trees.blackboard import Blackboard
 from py_trees.trees import BehaviourTree
 
+from benchmarks import checking
 from benchmarks.harness import Row, median
 from benchmarks.tick_trees import Node, Scripts, blocks, cell, chain, our_tree, their_tree
 from executive.engine.builder import BuiltTree
