@@ -110,7 +110,7 @@ def chain(depth: int) -> Node:
     node = Node("skill", "leaf", (), 3)
     for level in range(1, depth):
         if level % DEEPEST_FILE == 0:
-            node = Node(SUBTREE, f"below{level}", (node,))
+            node = Node(SUBTREE, node.name, (node,))
         node = Node("inverter", f"level{level}", (node,))
     return node
 
@@ -262,6 +262,8 @@ def _as_behaviour(node: Node, scripts: Scripts) -> Behaviour:
         check = ComparisonExpression("/bench/safe", 1, operator.ge)
         return CheckBlackboardVariableValue(node.name, check)
     children = [_as_behaviour(child, scripts) for child in node.children]
+    if node.kind == SUBTREE:
+        return children[0]
     if node.kind in _DECORATORS:
         return _DECORATORS[node.kind](node.name, children[0])
     return _COMPOSITES[node.kind](node.name, children)
