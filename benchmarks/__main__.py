@@ -9,10 +9,12 @@ from benchmarks.harness import Benchmark, document
 from benchmarks.report import write_page
 
 BENCHMARKS = {
+    "resuming": ("benchmarks.resuming", "untangling missions that are killed and gone on with"),
     "certificates": ("benchmarks.certificates", "knotted or not, with proofs that are replayed"),
     "checking": ("benchmarks.checking", "check, lint and fmt: time over that of Python itself"),
     "cable-physics": ("benchmarks.cable_physics", "speed of the cable beside PyBullet; knots kept"),
     "ticks": ("benchmarks.ticks", "speed of ticks beside py_trees; cost of a recording"),
+    "fuzz": ("benchmarks.fuzz", "random documents: faults, never tracebacks; valid trees run"),
     "tracing": ("benchmarks.tracing", "tracers on drawn scenes with exact truth"),
     "untangling": ("benchmarks.untangling", "the untangling mission on fresh seeds"),
 }

@@ -5,76 +5,21 @@ import json
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from toy_language import Journal, toy_skills, toy_types
+from toy_language import toy_skills, toy_types
 
-from executive.core.clock import ManualClock
+from benchmarks.fuzz import Bench
+from benchmarks.random_documents import ANYTHING, INNER, ROOTS, WORDS, document, spoiled
 from executive.core.errors import InputError
-from executive.engine.builder import build
 from executive.engine.document import KINDS
 from executive.engine.loader import load_program
-
-WORDS = st.sampled_from(
-    [
-        *(*KINDS, "name", "in", "out", "child", "children", "times", "seconds", "item"),
-        *("if", "while", "unless", "on_success", "part", "label", "find", "weigh", "work"),
-        *("root", "format", "tree", "type", "float", "x > 1", "written(p)", "$p.mass_kg"),
-        *("succeed", "all", "3", "$p", "p"),
-    ]
-)
-ANYTHING = st.recursive(
-    st.none() | st.booleans() | st.integers(-2, 3) | st.floats(allow_nan=False) | WORDS,
-    lambda inner: (
-        st.lists(inner, max_size=3) | st.dictionaries(WORDS, inner, min_size=1, max_size=3)
-    ),
-    max_leaves=8,
-)
-
-LEAVES = st.sampled_from(
-    [
-        {"when": "1 < 2"},
-        {"when": "n > 1"},
-        {"set": {"k": "n + 1"}},
-        {"skill": "find"},
-        {"skill": "work", "in": {"label": "a"}},
-        {"skill": "work", "in": {"label": "b", "ticks": 2, "fails": 1}, "if": "n < 3"},
-        {"skill": "work", "in": {"label": "c", "ticks": 3}, "while": "n > 0"},
-    ]
-)
-
-
-def blocks(inner):
-    children = st.lists(inner, min_size=1, max_size=3)
-    kinds = ["sequence", "reactive_sequence", "selector", "reactive_selector", "parallel"]
-    plain = st.tuples(st.sampled_from(kinds), children).map(lambda kind: {kind[0]: kind[1]})
-    wrapped = st.tuples(
-        st.sampled_from(
-            [
-                ("retry", {"times": 2, "delay_s": 0.1}),
-                ("repeat", {"times": 2}),
-                ("timeout", {"seconds": 0.3}),
-                ("cooldown", {"seconds": 0.3}),
-                ("for_each", {"item": "$i", "in": [1, 2]}),
-                *((kind, {}) for kind in ("run_once", "inverter", "force_success")),
-            ]
-        ),
-        inner,
-    ).map(lambda pair: {pair[0][0]: {**pair[0][1], "child": pair[1]}})
-    return plain | wrapped
-
-
-VALID = st.recursive(LEAVES, blocks, max_leaves=8)
-
-
-def load(folder, document):
-    file = folder / "t.yaml"
-    file.write_text(json.dumps(document))
-    return load_program(file, skills=toy_skills(), types=toy_types())
 
 
 def is_refused(folder, document):
     """Return whether a document is refused, and nothing but a refusal is raised."""
+    file = folder / "t.yaml"
+    file.write_text(json.dumps(document))
     try:
-        load(folder, document)
+        load_program(file, skills=toy_skills(), types=toy_types())
     except InputError:
         return True
     return False
@@ -86,26 +31,44 @@ def folder(tmp_path_factory):
     return tmp_path_factory.mktemp("fuzz")
 
 
+@pytest.fixture(scope="module")
+def trial(folder):
+    """Return what tries documents as the benchmark does."""
+    return Bench(folder)
+
+
+@settings(max_examples=100, deadline=None)
+@given(root=ROOTS)
+def test_valid_trees_tick_and_stop_every_skill_once(trial, root):
+    trial.try_valid(root)
+    assert (trial.tracebacks, trial.broken) == ([], [])
+
+
 @settings(max_examples=150, deadline=None)
-@given(root=VALID)
-def test_valid_trees_tick_and_stop_every_skill_once(folder, root):
-    ports = {"n": {"type": "int", "default": 2}}
-    program = load(folder, {"format": 1, "tree": "t", "in": ports, "root": root})
-    journal, clock = Journal(), ManualClock()
-    tree = build(program, devices={"journal": journal}, clock=clock)
-    for _ in range(6):
-        tree.root.tick_once()
-        clock.sleep_until(clock.now_s() + 0.1)
-    tree.root.stop(tree.root.status.INVALID)
-    ended = [line for line in journal.lines if not line.endswith("starts")]
-    assert len(ended) == len(journal.lines) - len(ended)
-    assert len({node.path for node in tree.nodes}) == len(tree.nodes)
+@given(text=spoiled())
+def test_spoiled_documents_give_faults_and_no_traceback(trial, text):
+    trial.try_spoiled(text)
+    assert trial.tracebacks == []
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=150, deadline=None)
 @given(root=ANYTHING, more=st.dictionaries(WORDS, ANYTHING, max_size=2))
 def test_any_document_loads_or_is_refused(folder, root, more):
     is_refused(folder, {"format": 1, "tree": "t", "root": root, **more})
+
+
+def test_random_trees_are_made_of_every_kind_of_node():
+    """Every kind is in the tables that the trees are drawn from."""
+    drawn = set()
+
+    @settings(max_examples=400, deadline=None, derandomize=True, database=None)
+    @given(root=ROOTS)
+    def draw(root):
+        text = json.dumps(document(root)) + INNER
+        drawn.update(kind for kind in KINDS if f'"{kind}"' in text)
+
+    draw()
+    assert set(KINDS) - drawn == set()
 
 
 @pytest.mark.parametrize("depth", [20, 100, 150, 400])
