@@ -1,5 +1,6 @@
 """One foreign tree, node by node, as drafts of our nodes."""
 
+import ast
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from typing import Final
@@ -113,13 +114,46 @@ class TreeTranslator:
 
     def root(self, skip: Skip | None) -> Draft | None:
         """Return the root of the tree; what is refused on the way is in the plan."""
-        element = self._plan.trees.trees[self._tree].children[0]
+        element = self._without_first_values(self._plan.trees.trees[self._tree].children[0])
         draft = self.node(element, skip)
         if draft is not None:
             draft.body.pop("name", None)  # the root is named after its tree
             for each in draft.walk():
                 _name_apart(each.children)
         return draft
+
+    def _without_first_values(self, element: Element) -> Element:
+        """Take what a script sets once, before anything else, for first values of keys."""
+        match element:
+            case Element(
+                tag="Sequence",
+                attributes=none,
+                children=[
+                    Element(
+                        tag="RunOnce",
+                        attributes=also_none,
+                        children=[Element(tag="Script", attributes=script)],
+                    ),
+                    rest,
+                ],
+            ) if not none and not also_none and [*script] == ["code"]:
+                values = self._constants(script["code"])
+                if values is not None:
+                    self.kept.update(values)
+                    return rest
+        return element
+
+    def _constants(self, code: str) -> dict[str, object] | None:
+        try:
+            statements = read_script(code, self._words)
+        except InputError:
+            return None
+        if not statements or not all(each.key and not each.reads for each in statements):
+            return None
+        try:
+            return {each.key: _constant(each.text) for each in statements}
+        except ValueError:
+            return None
 
     def node(self, element: Element, skip: Skip | None) -> Draft | None:
         """Return one node with everything below it, None where something is refused."""
@@ -528,6 +562,11 @@ def _expression(value: object) -> str:
     if isinstance(value, list):
         return f"[{', '.join(_expression(item) for item in value)}]"
     return repr(value)
+
+
+def _constant(text: str) -> object:
+    words = {"true": True, "false": False}
+    return words[text] if text in words else ast.literal_eval(text)
 
 
 def _name_apart(children: list[Draft]) -> None:

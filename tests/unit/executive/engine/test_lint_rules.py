@@ -335,3 +335,37 @@ def test_a_waiver_of_what_only_missions_show_is_no_finding_without_one(lint, tmp
     both = lint_files(files, skills=skills(), types=toy_types())
     assert both.findings == ()
     assert [finding.code for finding, _ in both.waived] == ["L111"]
+
+
+def test_who_can_halt_each_leaf(lint):
+    text = """\
+format: 1
+tree: t
+in: {a: {type: bool}}
+root:
+  timeout:
+    seconds: 20
+    child:
+      reactive_sequence:
+        - {when: a, name: safe}
+        - parallel:
+            children:
+              - {subtree: acting, while: not a}
+              - {wait: 3}
+"""
+    halts = {one.node: one.by for one in lint(text).halts["t"]}
+    block = "t/reactive_sequence"
+    around_it = ("t: timeout after 20 s", f"{block}: safe, asked in every tick")
+    assert halts == {
+        f"{block}/parallel/acting": (
+            *around_it,
+            f"{block}/parallel: wait, which may decide it",
+            f"{block}/parallel/acting: while not a",
+        ),
+        f"{block}/parallel/wait": (
+            *around_it,
+            f"{block}/parallel: acting, which may decide it",
+        ),
+    }
+    mission = lint(f"format: 1\nmission: t\ncell: c\ntimeout_s: 60.0\nroot: {WORK}\n")
+    assert [one.by for one in mission.halts["t"]] == [("the mission after 60 s",)]

@@ -1,5 +1,6 @@
 """Export and import undo each other where both languages can say a tree."""
 
+import ast
 import json
 
 import pytest
@@ -12,6 +13,8 @@ from executive.engine.exchange.exporting import export_program
 from executive.engine.exchange.importing import import_text
 from executive.engine.exchange.scripting import write_condition
 from executive.engine.exchange.scripts import Vocabulary, read_script
+from executive.engine.exchange.yamltext import flow
+from executive.engine.expression import parse_expression
 from executive.engine.loader import load_program
 
 HANDS = {
@@ -132,7 +135,8 @@ ROOTS = st.recursive(LEAVES, blocks, max_leaves=7).map(
 def normal(value, key=""):
     """Return a document as both ways of writing it say it."""
     if isinstance(value, dict):
-        return {k: normal(v, k) for k, v in value.items() if k != "memory" and v not in ({}, [])}
+        defaults = {"succeed": "all"}
+        return {k: normal(v, k) for k, v in value.items() if defaults.get(k) != v}
     if isinstance(value, list):
         return [normal(item) for item in value]
     if isinstance(value, bool):
@@ -140,6 +144,8 @@ def normal(value, key=""):
     if isinstance(value, (int, float)):
         return f"{float(value)!r}"
     text = str(value)
+    if key in ("when", "if", "unless", "done") and text:
+        return ast.unparse(ast.parse(text))
     return f"{float(text)!r}" if text.isdecimal() else text
 
 
@@ -149,10 +155,11 @@ def unique_names(node):
         seen = set()
         for child in node.get("children", []):
             for body in child.values():
-                if isinstance(body, dict) and body.get("name") in seen:
-                    del body["name"]
-                elif isinstance(body, dict):
-                    seen.add(body.get("name"))
+                if isinstance(body, dict) and "name" in body:
+                    if body["name"] in seen:
+                        del body["name"]
+                    else:
+                        seen.add(body["name"])
         for value in node.values():
             unique_names(value)
     elif isinstance(node, list):
@@ -162,12 +169,12 @@ def unique_names(node):
 
 def export(folder, root):
     tree = {"format": 1, "tree": "t", "uses": ["t_stubs"], "root": root}
-    (folder / "t.yaml").write_text(json.dumps(tree))
+    (folder / "t.yaml").write_text(flow(tree), encoding="utf-8")
     (folder / "t_stubs.yaml").write_text(json.dumps(HANDS))
     return export_program(load_program(folder / "t.yaml", skills=NOTHING, types=TYPES))
 
 
-@settings(deadline=None, max_examples=120)
+@settings(deadline=None, max_examples=60)
 @given(ROOTS)
 def test_a_tree_that_is_exported_and_imported_is_the_same(tmp_path_factory, root):
     unique_names(root)
@@ -220,13 +227,19 @@ def test_xml_that_is_imported_and_exported_settles_after_one_trip(tmp_path):
     assert b'goal="1;2"' in texts[0]
 
 
+NUMBERS = st.recursive(
+    st.sampled_from(["1", "2.5", "n", "m"]),
+    lambda inner: (
+        st.tuples(inner, st.sampled_from("+-*"), inner).map("({0[0]}) {0[1]} ({0[2]})".format)
+        | inner.map("-({})".format)
+    ),
+    max_leaves=3,
+)
 EXPRESSIONS = st.recursive(
-    st.sampled_from(["a", "b", "1", "2.5", "'t'", "true", "false"]),
+    st.sampled_from(["a", "b", "true", "'t' == 't'"])
+    | st.tuples(NUMBERS, st.sampled_from(["<", "==", "!=", ">="]), NUMBERS).map(" ".join),
     lambda inner: st.one_of(
         st.tuples(inner, st.sampled_from(["and", "or"]), inner).map(
-            "({0[0]}) {0[1]} ({0[2]})".format
-        ),
-        st.tuples(inner, st.sampled_from(["<", "==", "!=", ">="]), inner).map(
             "({0[0]}) {0[1]} ({0[2]})".format
         ),
         inner.map("not ({})".format),
@@ -236,30 +249,15 @@ EXPRESSIONS = st.recursive(
 )
 
 
-def _typed(tree_text):
-    """Return whether BehaviorTree.CPP's types allow an expression at all."""
-    try:
-        return read_script(write_condition(tree_text), Vocabulary(str))[0]
-    except Exception:  # noqa: BLE001 - asked for its own sake below
-        return None
-
-
-@settings(deadline=None, max_examples=200)
+@settings(deadline=None, max_examples=120)
 @given(EXPRESSIONS)
 def test_a_script_means_what_its_expression_meant(text):
-    back = _typed(text)
-    if back is None:
-        return
+    (back,) = read_script(write_condition(text), Vocabulary(str))
+    before, after = parse_expression(text), parse_expression(back.text)
     for a in (True, False):
         for b in (True, False):
-            names = {"a": a, "b": b, "true": True, "false": False}
-            outcomes = []
-            for each in (text, back.text):
-                try:
-                    outcomes.append(bool(eval(each, {"__builtins__": {}}, names)))
-                except TypeError:
-                    outcomes.append(None)
-            assert outcomes[0] == outcomes[1]
+            names = {"a": a, "b": b, "n": 2, "m": 0.5}
+            assert before.evaluate(names) == after.evaluate(names)
 
 
 @pytest.mark.parametrize(
@@ -272,7 +270,7 @@ def test_a_script_means_what_its_expression_meant(text):
         ({"when": "size([1]) > 0"}, "scripts of BehaviorTree.CPP cannot say"),
         ({"when": True, "on_start": {"k": "1"}}, "on_start has no counterpart"),
         ({"for_each": {"item": "$i", "in": "$[1, 2]", "child": {"when": True}}}, "a queue"),
-        ({"switch": {"on": "1", "cases": {"a": {"when": True}}}}, "switch decides once"),
+        ({"switch": {"on": "'a'", "cases": {"a": {"when": True}}}}, "switch decides once"),
         (
             {"parallel": {"children": [{"when": True}, {"when": "1 > 2"}], "fail": "all"}},
             "fails with 1, try fail: 1",

@@ -135,7 +135,7 @@ def is_handled(data, folder):
         assert "is not an expression" not in text, text
 
 
-@settings(deadline=None, max_examples=80, suppress_health_check=[HealthCheck.too_slow])
+@settings(deadline=None, max_examples=60, suppress_health_check=[HealthCheck.too_slow])
 @given(st.lists(TREES, min_size=1, max_size=2))
 def test_any_tree_becomes_documents_or_faults(tmp_path_factory, trees):
     more = f'<BehaviorTree ID="Sub">{trees[-1]}</BehaviorTree>'
@@ -149,7 +149,7 @@ def test_any_bytes_become_documents_or_faults(data):
         import_text("t.xml", data, NOTHING)
 
 
-@settings(deadline=None, max_examples=300)
+@settings(deadline=None, max_examples=200)
 @given(
     st.text(string.printable, max_size=30)
     | st.lists(
