@@ -23,6 +23,9 @@ def lint(
     strict: Annotated[
         bool, typer.Option("--strict", help="Let no waiver count: show what they allow, too.")
     ] = False,
+    halts: Annotated[
+        bool, typer.Option("--halts", help="Say who can halt each leaf, instead of findings.")
+    ] = False,
     rules: Annotated[bool, typer.Option("--rules", help="List the rules and exit.")] = False,
 ) -> None:
     """Find what is legal but surely wrong; exit 1 with findings, 2 when a file has faults."""
@@ -30,6 +33,9 @@ def lint(
         typer.echo(_rules())
         return
     report = lint_files(yaml_files(files or TREES), skills=skills(), types=port_types())
+    if halts:
+        typer.echo(_halts(report, as_json=as_json))
+        raise typer.Exit(2 if report.faults else 0)
     findings = sorted([*report.findings, *(one for one, _ in report.waived if strict)])
     if as_json:
         typer.echo(_as_json(report, strict=strict))
@@ -39,6 +45,18 @@ def lint(
         typer.echo(_summary(report, len(findings), strict=strict), err=bool(findings))
     if report.faults or findings:
         raise typer.Exit(2 if report.faults else 1)
+
+
+def _halts(report: LintReport, *, as_json: bool) -> str:
+    if as_json:
+        trees = {name: [asdict(one) for one in leaves] for name, leaves in report.halts.items()}
+        return json.dumps(trees, indent=2)
+    lines = [str(fault) for fault in report.faults]
+    for leaves in report.halts.values():
+        for leaf in leaves:
+            by = leaf.by or ("nobody but a stop of the run",)
+            lines += [leaf.node, *(f"  {one}" for one in by)]
+    return "\n".join(lines)
 
 
 def _rules() -> str:

@@ -1,6 +1,6 @@
 """Looks at files with every rule, and sorts out what waivers let stand."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -8,6 +8,7 @@ from executive.core.errors import Fault
 from executive.core.registry import Registry, closest
 from executive.core.skill import Skill
 from executive.engine.lint.findings import Finding, PortSpot, Rule, Spot
+from executive.engine.lint.halts import Halts, find_halts
 from executive.engine.lint.rules import RULES, WAIVER_CODE, WAIVER_RULE
 from executive.engine.lint.subject import Subject
 from executive.engine.lint.waivers import FORM, Waiver, find_waivers
@@ -24,12 +25,14 @@ class LintReport:
         waived: What a waiver lets stand, with its reason.
         faults: What keeps files from being looked at.
         files: How many trees and missions were looked at.
+        halts: Who can halt each leaf of each of them, by its name.
     """
 
     findings: tuple[Finding, ...]
     waived: tuple[tuple[Finding, str], ...]
     faults: tuple[Fault, ...]
     files: int
+    halts: Mapping[str, tuple[Halts, ...]]
 
 
 def lint_files(
@@ -55,7 +58,8 @@ def lint_files(
     for program in programs:
         looking.look(program)
     findings, waived = looking.sorted_out()
-    return LintReport(tuple(findings), tuple(waived), tuple(faults), len(programs))
+    halts = {program.tree.name: tuple(find_halts(Subject(program))) for program in programs}
+    return LintReport(tuple(findings), tuple(waived), tuple(faults), len(programs), halts)
 
 
 @dataclass(slots=True)

@@ -52,7 +52,7 @@ class Traits:
         again_after: The answer of its child after which it runs it again, empty for never.
         ignores: Answers of its child that make no difference to it.
         chooses: Whether its first child decides which of the others is run.
-        limits: Whether it may halt its child by itself.
+        rechooses: Whether an expression decides anew in every tick which child is run.
         once: Whether it keeps its child from being run a second time.
     """
 
@@ -63,7 +63,7 @@ class Traits:
     again_after: str = ""
     ignores: frozenset[str] = frozenset()
     chooses: bool = False
-    limits: bool = False
+    rechooses: bool = False
     once: bool = False
 
 
@@ -233,10 +233,10 @@ TRAITS: Final[Mapping[str, Traits]] = MappingProxyType(
         "if_then_else": Traits(_if_then_else, chooses=True),
         "while_do_else": Traits(_if_then_else, chooses=True, reactive=True),
         "switch": Traits(_switch),
-        "reactive_switch": Traits(_switch),
+        "reactive_switch": Traits(_switch, rechooses=True),
         "retry": Traits(_retry, again_after="fail"),
         "repeat": Traits(_repeat, again_after="succeed"),
-        "timeout": Traits(_may_fail, limits=True),
+        "timeout": Traits(_may_fail),
         "cooldown": Traits(_may_fail),
         "for_each": Traits(_for_each, again_after="succeed"),
         "run_once": Traits(_same, once=True),
