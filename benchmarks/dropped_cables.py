@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial import cKDTree
 
 from perception.training import contact
 from perception.training.scenes import Scene, SceneConfig, lay_scene
@@ -31,9 +32,12 @@ CONFIG = SceneConfig(
 LOW, HIGH = np.array([6.0, 28.0]), np.array([174.0, 152.0])
 STEP = 3.0
 # Typical curvature of cable on a table, and how fast it changes; its least radius.
-CURVATURE, MEMORY, TIGHTEST = 1.0 / 14.0, 0.8, 4.0
+CURVATURE, MEMORY, TIGHTEST = 1.0 / 18.0, 0.8, 5.0
 BORDER = 22.0
-TRIES = 400
+TRIES, GROWTHS = 400, 40
+# No strand is nearer than this to the last nodes of a cable; crossings are this far apart.
+END_NODES, CLEARANCE = 14, 3.5
+SEMI_PLANAR = 0.8
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -54,16 +58,43 @@ class Core:
 
 def draw_tier(rng: np.random.Generator, tier: str) -> Scene:
     """Draw a scene of tier B1, B2 or B3."""
-    cores = {"B1": _dropped, "B2": _knotted, "B3": _tied}[tier]
+    draw = {"B1": _dropped, "B2": _knotted, "B3": _tied}[tier]
     for _ in range(TRIES):
-        chosen = cores(rng)
-        lines = [
-            _grown(rng, core.points, length) for core, length in zip(chosen, LENGTHS, strict=True)
-        ]
-        known = _prescribed(chosen, lines)
-        if known is not None:
+        cores = draw(rng)
+        lines = _laid(rng, cores)
+        known = _prescribed(cores, lines) if lines is not None else None
+        if lines is not None and known is not None:
             return lay_scene(rng, lines, CONFIG, known)
     raise RuntimeError(f"no scene of tier {tier} in {TRIES} tries")
+
+
+def _laid(rng: np.random.Generator, cores: Sequence[Core]) -> list[Floats] | None:
+    """Return cables with these cores, ends in sight; None where some end finds no room."""
+    lines: list[Floats] = []
+    for core, length in zip(cores, LENGTHS, strict=True):
+        grown = (_grown(rng, core.points, length) for _ in range(GROWTHS))
+        line = next((line for line in grown if _fits(line, lines)), None)
+        if line is None:
+            return None
+        lines.append(line)
+    return lines
+
+
+def _fits(line: Floats, others: Sequence[Floats]) -> bool:
+    """Say whether a cable lies in view, and neither hides ends nor has hidden ends itself."""
+    if (line < LOW - 3.0).any() or (line > HIGH + 3.0).any():
+        return False
+    rest = np.vstack([line[END_NODES + 12 : -END_NODES - 12], *others])
+    own = np.vstack([line[:END_NODES], line[-END_NODES:]])
+    ends = [np.vstack([other[:END_NODES], other[-END_NODES:]]) for other in others]
+    if not _apart(own, rest) or not all(_apart(end, line) for end in ends):
+        return False
+    return _is_semi_planar([*others, line])
+
+
+def _apart(ends: Floats, rest: Floats) -> bool:
+    gaps, _ = cKDTree(rest).query(ends)
+    return bool(gaps.min() > CLEARANCE)
 
 
 def _dropped(rng: np.random.Generator) -> list[Core]:
@@ -96,9 +127,10 @@ def _tied(rng: np.random.Generator) -> list[Core]:
     place = rng.uniform(LOW + 45.0, HIGH - 45.0)
     both = _turned(rng, np.vstack([BIGHT, -BIGHT]) * size)
     first, second = place + both[: len(BIGHT)], place + both[len(BIGHT) :]
-    leg = _grown(rng, first, LENGTHS[0])
+    grown = (_grown(rng, first, LENGTHS[0]) for _ in range(GROWTHS))
+    leg = next((line for line in grown if _fits(line, [])), first)
     # The third cable winds round the first one, away from the knot.
-    begin = int(rng.uniform(0.1, 0.25) * len(leg))
+    begin = int(rng.uniform(0.08, 0.25) * len(leg))
     half_turns = int(rng.integers(2, 5))
     along = leg[begin : begin + int(half_turns * rng.uniform(14.0, 22.0))]
     return [
@@ -178,10 +210,7 @@ class _Known:
 
 def _prescribed(cores: Sequence[Core], lines: Sequence[Floats]) -> _Known | None:
     """Return over and under of all cores; None where lines do not cross as their cores should."""
-    if any((line < LOW - 3.0).any() or (line > HIGH + 3.0).any() for line in lines):
-        return None
-    xy = np.vstack(lines)
-    cable = np.repeat(np.arange(len(lines)), [len(line) for line in lines])
+    xy, cable = _numbered(lines)
     starts = np.searchsorted(cable, np.arange(len(lines)))
     found = contact.crossings(xy, cable)
     spans = [
@@ -204,6 +233,17 @@ def _prescribed(cores: Sequence[Core], lines: Sequence[Floats]) -> _Known | None
         for (at, pair), on_top in zip(visits, core.over, strict=True):
             pairs[pair] = on_top if at == pair[0] else not on_top
     return _Known(pairs)
+
+
+def _is_semi_planar(lines: Sequence[Floats]) -> bool:
+    """Say whether no more than two strands lie upon each other anywhere."""
+    places = np.vstack(lines)[contact.crossings(*_numbered(lines))[:, 0].astype(int)]
+    return len(places) < 2 or not cKDTree(places).query_pairs(SEMI_PLANAR)
+
+
+def _numbered(lines: Sequence[Floats]) -> tuple[Floats, NDArray[np.int64]]:
+    """Return the nodes of all cables, and which cable each belongs to."""
+    return np.vstack(lines), np.repeat(np.arange(len(lines)), [len(line) for line in lines])
 
 
 def _span(core: Core, line: Floats) -> NDArray[np.int64]:
