@@ -164,6 +164,41 @@ def test_people_get_a_summary_on_stdout_and_progress_on_stderr(mission):
     assert "toy_move" in result.stderr
 
 
+def test_a_truth_that_cannot_be_had_costs_nothing_else(mission, monkeypatch):
+    def truth(self):
+        raise OSError("no referee")
+
+    monkeypatch.setattr(toy_cellwright.ScoredCell, "truth", truth)
+    code, document = run_json(mission, "--record", "a.mcap")
+    assert (code, document["outcome"]) == (0, "success")
+    assert document["claim"] == {"untangled": True, "knotted_probability": 0.02}
+    recording = Recording.open(Path("a.mcap"))
+    assert recording.result.raised == ("truth: OSError: no referee",)
+    assert "raised    truth: OSError: no referee" in run(mission).stdout
+
+
+def test_the_slowest_nodes_are_named_worst_first_and_recorded(mission):
+    toy = toy_cellwright.MISSION.replace("{steps: $steps}}", "{steps: $steps}, budget_s: 0.0001}")
+    mission.write_text(toy)
+    result = run(mission, "--record", "a.mcap")
+    assert "slow      toy/toy_move: 3 times over 0.0001 s a step, at worst 0.0" in result.stdout
+    recording = Recording.open(Path("a.mcap"))
+    (slow,) = recording.result.slow
+    assert (slow.path, slow.times, slow.budget_s) == ("toy/toy_move", 3, 0.0001)
+    assert [step.node for step in recording.tick(0).slow] == [1]
+
+
+def test_what_leaves_survived_is_in_the_summary(mission):
+    mission.write_text(
+        toy_cellwright.MISSION.replace("cell: toy_cell", "cell: toy_cell\non_error: fail")
+    )
+    result = run(mission, "--set", "ending=raise")
+    assert result.exit_code == 1
+    assert (
+        "raised    toy/toy_end (toy_end): raised at tick 3: DeviceError: the toy" in result.stdout
+    )
+
+
 def test_a_replay_is_written_from_the_recording(mission, monkeypatch):
     written = []
     views = type(sys)("executive.app.views")
@@ -227,6 +262,23 @@ def test_one_interrupt_ends_the_process_in_order_with_4(tmp_path):
     recording = Recording.open(tmp_path / "a.mcap")
     assert recording.complete
     assert recording.tick(len(recording) - 1).halts
+
+
+def test_ctrl_z_pauses_the_mission_and_lets_it_go_on(tmp_path):
+    process = started(tmp_path, "--timeout", "100000")
+    ticking(tmp_path / "a.mcap")
+    process.send_signal(signal.SIGTSTP)
+    time.sleep(1.0)
+    paused = len(Recording.open(tmp_path / "a.mcap"))
+    time.sleep(0.5)
+    assert len(Recording.open(tmp_path / "a.mcap")) == paused
+    process.send_signal(signal.SIGTSTP)
+    ticking(tmp_path / "a.mcap", paused + 5)
+    process.send_signal(signal.SIGINT)
+    _, stderr = process.communicate(timeout=30)
+    assert "paused" in stderr
+    assert "by SIGTSTP (toy/toy_move: hold)" in stderr
+    assert "resumed" in stderr
 
 
 def test_a_second_interrupt_breaks_into_a_tick_that_hangs(tmp_path):

@@ -58,6 +58,17 @@ def test_conditions_and_inputs_that_cannot_be_read_fail_too(tmp_path, leaf):
     assert "missing" in str(rehearsal.seen.ticks[0].faults)
 
 
+def test_a_guard_that_raises_ends_the_mission_all_the_same(tmp_path):
+    root = """
+    sequence:
+      - force_success: {child: {when: "false", on_success: {missing: "true"}}}
+      - force_success: {child: {skill: swing, if: missing}}
+    """
+    result = Rehearsal(tmp_path, root, "on_error: fail").run()
+    assert result.outcome is MissionOutcome.ERROR
+    assert "missing" in result.reason
+
+
 def test_an_exit_ends_the_mission_whatever_it_says_and_stops_every_leaf(tmp_path):
     root = """
     parallel:
