@@ -211,6 +211,8 @@ class WhileRunning(Gated):
     on when the next tick reaches it, and is halted by the first tick that does not.
     """
 
+    MEMORY = ("_reached",)
+
     def __init__(self, name: str, child: Behaviour, *, says: Status) -> None:
         """Answer `says` while the child runs."""
         super().__init__(name, child)
