@@ -4,9 +4,12 @@ import json
 
 import pytest
 from toy_language import toy_skills, toy_types
+from typer.testing import CliRunner
 
+from executive.app.dry_cell import DryCell
+from executive.cli.main import app
 from executive.core.clock import ManualClock
-from executive.core.errors import DocumentError
+from executive.core.errors import DocumentError, InputError
 from executive.engine.builder import build
 from executive.engine.loader import check_files, load_program
 
@@ -120,3 +123,26 @@ def test_a_file_of_stubs_is_checked_by_itself(tmp_path):
     checked, found = check_files([tmp_path / "hands.yaml"], skills=toy_skills(), types=toy_types())
     assert [one.kind for one in checked] == ["stubs"]
     assert len(found) == 1
+
+
+def test_a_mission_of_stubs_runs_on_the_dry_cell(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    write(tmp_path)
+    mission = {
+        "format": 1,
+        "mission": "go",
+        "cell": "dry",
+        "uses": ["hands"],
+        "root": {"sequence": [{"wait": 3600}, {"retry": {"times": 2, "child": GRASP}}]},
+    }
+    (tmp_path / "go.yaml").write_text(json.dumps(mission))
+    result = CliRunner().invoke(app, ["run", "go.yaml", "--json"])
+    report = json.loads(result.stdout)
+    assert (result.exit_code, report["outcome"]) == (0, "success"), result.output
+    assert report["sim_s"] >= 3600.0
+
+
+@pytest.mark.parametrize("given", ["config", "scenario"])
+def test_the_dry_cell_takes_nothing(given):
+    with pytest.raises(InputError, match=f"takes no {given}; got 'arm'"):
+        DryCell(**{"config": {}, "scenario": {}, given: {"arm": 1}})
