@@ -1,4 +1,4 @@
-"""Every skill and port type that ships, by name.
+"""Every skill and port type that ships or comes with an installed package, by name.
 
 Light on purpose: `check`, `skills` and `tree` read it, so nothing here loads a camera, a
 simulator or a planner, and a skill is imported when a tree names it. Skills talk to
@@ -10,6 +10,7 @@ from typing import Final
 
 from executive.core.registry import LazyRegistry, Registry
 from executive.core.skill import Skill
+from executive.engine.packages import add_packaged_skills, add_packaged_types
 
 _SKILLS: Final = {
     "account_for_cable": "skills.cable.account_for_cable:AccountForCable",
@@ -47,11 +48,11 @@ _PORT_TYPES: Final = {
 
 @cache
 def skills() -> Registry[type[Skill]]:
-    """Return the skills that ship, by the name that trees use."""
-    return LazyRegistry("skill", _SKILLS)
+    """Return the skills that ship and those of installed packages, by the name that trees use."""
+    return add_packaged_skills(LazyRegistry("skill", _SKILLS))
 
 
 @cache
 def port_types() -> Registry[type]:
     """Return the types that ports may have in YAML, by name."""
-    return LazyRegistry("port type", _PORT_TYPES)
+    return add_packaged_types(LazyRegistry("port type", _PORT_TYPES))
