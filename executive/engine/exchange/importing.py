@@ -166,7 +166,8 @@ class _Import:
         if translator.kept:
             head["keep"] = translator.kept
         root = _with_copies(self._plan, ports, root)
-        lines = [line for comment in comments for line in comment_lines(comment)]
+        origin = f"{tree} of {Path(element.file).name}"
+        lines = [line for comment in (origin, *comments) for line in comment_lines(comment)]
         return "\n".join([*lines, document_text(head, root)])
 
     def _stubs_text(self) -> str:
