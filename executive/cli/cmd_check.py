@@ -9,19 +9,21 @@ from typing import Annotated
 import typer
 
 from executive.app.catalogue import port_types, skills
-from executive.cli.files import yaml_files
+from executive.cli.files import TREES, yaml_files
 from executive.core.errors import Fault
 from executive.engine.loader import Checked, check_files
 
 
 def check(
-    files: Annotated[list[Path], typer.Argument(help="YAML files, or folders of them.")],
+    files: Annotated[
+        list[Path] | None, typer.Argument(help="YAML files, or folders of them.  [default: trees]")
+    ] = None,
     as_json: Annotated[
         bool, typer.Option("--json", help="Print one JSON document on stdout.")
     ] = False,
 ) -> None:
     """Check trees, missions and cells without running them; exit 2 when one has faults."""
-    checked, faults = check_files(yaml_files(files), skills=skills(), types=port_types())
+    checked, faults = check_files(yaml_files(files or TREES), skills=skills(), types=port_types())
     if as_json:
         typer.echo(_as_json(checked, faults))
     else:

@@ -2,6 +2,7 @@
 
 from collections import defaultdict
 from collections.abc import Container, Mapping
+from functools import lru_cache
 from typing import Any, Final
 
 from pydantic import ValidationError
@@ -81,7 +82,7 @@ def _translate(source: Source, model: type[Document], error: ValidationError) ->
     """Say what pydantic found; what several members of a union say of one value is joined."""
     said: dict[tuple[YamlPath, bool], list[str]] = defaultdict(list)
     whole: list[Fault] = []
-    nodes = node_paths(source.data)
+    nodes = _paths(source)
     for detail in error.errors(include_url=False, include_input=False):
         path, inner = _yaml_path(source.data, detail["loc"], nodes)
         context = {name: _number(value) for name, value in detail.get("ctx", {}).items()}
@@ -158,10 +159,15 @@ def _no_node(value: object) -> str:
 
 def _fault(source: Source, path: YamlPath, message: str, *, at_key: bool = False) -> Fault:
     line, column = source.key_mark(path) if at_key else source.value_mark(path)
-    paths = node_paths(source.data)
+    paths = _paths(source)
     above = (path[:length] for length in range(len(path), -1, -1))
     node = next((paths[place] for place in above if place in paths), "")
     return Fault(source.file, line, column, node, message)
+
+
+@lru_cache(maxsize=2)  # all faults of a file are told one after the other
+def _paths(source: Source) -> Mapping[YamlPath, str]:
+    return node_paths(source.data)
 
 
 def _yaml_path(
