@@ -37,11 +37,11 @@ from executive.engine.recording.parts import parts_of
 from executive.engine.ticks import NodeOutcome, NodeStatus, Tick
 
 _OWN_TOPICS = (MISSION_TOPIC, TICKS_TOPIC, RESULT_TOPIC)
-# What the MCAP library raises over bytes that are not as they were written.
-_BROKEN = (
+BROKEN = (
     *(McapError, ZstdError, struct.error, EOFError),
     *(ValueError, KeyError, MemoryError, OverflowError),
 )
+"""What the MCAP library raises over bytes that are not as they were written."""
 
 _Found = tuple[Schema | None, Channel, Message]
 
@@ -90,7 +90,7 @@ class Recording:
         self,
         path: Path,
         header: MissionHeader,
-        ticks: Sequence[bytes],
+        ticks: list[bytes],
         result: ResultMessage | None,
         complete: bool,
     ) -> None:
@@ -129,6 +129,16 @@ class Recording:
             results[-1] if results else None,
             reading.complete and in_order,
         )
+
+    def take(self, topic: str, number: int, data: bytes) -> bool:
+        """Take in one more message of a run that goes on; return whether it was news."""
+        if topic == TICKS_TOPIC and number == len(self._raw):
+            self._raw.append(data)
+            return True
+        if topic == RESULT_TOPIC and self.result is None:
+            self.result = ResultMessage.model_validate_json(data)
+            return True
+        return False
 
     def __len__(self) -> int:
         """Return the number of tick records, the runner's closing one included."""
@@ -286,7 +296,7 @@ class _Reading:
             self.complete = True
         except OSError as cause:
             raise _no_recording(self._path, cause.strerror or str(cause)) from cause
-        except _BROKEN:
+        except BROKEN:
             return
 
 
@@ -301,7 +311,7 @@ def _messages_of(file: BinaryIO, topics: Sequence[str] | None) -> Iterator[_Foun
         reader = SeekingReader(file, validate_crcs=True)
         summary = reader.get_summary()
         indexed = summary is not None and bool(summary.chunk_indexes)
-    except _BROKEN:
+    except BROKEN:
         indexed = False
     if indexed:
         # In the order of time, which is that of writing; without it all chunks would be

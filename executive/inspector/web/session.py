@@ -11,6 +11,7 @@ from markdown_it import MarkdownIt
 
 from executive.core.errors import InputError
 from executive.core.registry import closest
+from executive.engine.recording.growing import GrowingRecording
 from executive.engine.recording.reader import KeyState, Recording
 from executive.engine.ticks import NodeStatus
 from executive.inspector.answer_view import answer_document, written_document
@@ -37,40 +38,36 @@ class Session:
         """
         self.path = path
         self._lock = threading.RLock()
-        self._size = -1
-        self._recording = Recording.open(path)
-        self._activity = Activity(len(self._recording.header.nodes))
+        self._growing = GrowingRecording(path)
+        self._activity = Activity(len(self.recording.header.nodes))
+        self._activity.follow(self.recording)
         self._past: PastRun | None = None
-        self.refresh()
 
     @property
     def recording(self) -> Recording:
         """The recording as far as it has been read."""
-        return self._recording
+        return self._growing.recording
 
     @property
     def ended(self) -> bool:
         """Whether the run came to its end and said so."""
-        return self._recording.result is not None
+        return self.recording.result is not None
 
     def refresh(self) -> bool:
         """Read what has been written since; return whether there was anything."""
         with self._lock:
-            size = self.path.stat().st_size
-            if size == self._size:
+            if not self._growing.refresh():
                 return False
-            self._size = size
-            self._recording = Recording.open(self.path)
-            self._activity.follow(self._recording)
+            self._activity.follow(self.recording)
             self._tick_document.cache_clear()
             return True
 
     def progress(self) -> dict[str, object]:
         """Return how far the run is: what a page needs to hear again and again."""
-        result, count = self._recording.result, len(self._recording)
+        result, count = self.recording.result, len(self.recording)
         return {
             "ticks": count,
-            "time_s": self._recording.tick(count - 1).time_s if count else 0.0,
+            "time_s": self.recording.tick(count - 1).time_s if count else 0.0,
             "ended": self.ended,
             "report": None if result is None else result.report.model_dump(mode="json"),
             "rate": None if result is None else asdict(result.rate),
@@ -78,7 +75,7 @@ class Session:
 
     def run(self) -> dict[str, object]:
         """Return what is run: the mission, its nodes, and how far it is."""
-        header = self._recording.header
+        header = self.recording.header
         return {
             "file": self.path.name,
             "mission": header.mission,
@@ -109,14 +106,14 @@ class Session:
         return self._tick_document(number)
 
     def _check(self, number: int) -> None:
-        count = len(self._recording)
+        count = len(self.recording)
         if not 0 <= number < count:
             raise InputError(f"no tick {number}; expected 0 to {count - 1}")
 
     @lru_cache(maxsize=512)  # noqa: B019 - a session lives as long as the server
     def _tick_document(self, number: int) -> dict[str, Any]:
         with self._lock:
-            recording = self._recording
+            recording = self.recording
             tick, states = recording.tick(number), recording.blackboard(number)
             reasons = recording.reasons(number)
             statuses = recording.statuses(number)
@@ -197,8 +194,8 @@ class Session:
     def past(self) -> PastRun:
         """Return the run as questions need it, as far as the recording has been read."""
         with self._lock:
-            if self._past is None or len(self._past.index) != len(self._recording):
-                self._past = PastRun(self._recording)
+            if self._past is None or len(self._past.index) != len(self.recording):
+                self._past = PastRun(self.recording)
             return self._past
 
     def image(self, number: int) -> bytes:
@@ -214,7 +211,7 @@ class Session:
 
     def _images(self) -> Mapping[int, bytes]:
         with self._lock:
-            return {image.number: image.png for image in self._recording.images()}
+            return {image.number: image.png for image in self.recording.images()}
 
 
 def _row(key: str, state: KeyState, number: int) -> dict[str, object]:
