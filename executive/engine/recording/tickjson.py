@@ -52,7 +52,7 @@ class TickEncoder:
         if self._is_keyframe(tick.number):
             self.keyframe_due = False
             message["keyframe"] = {
-                "statuses": self._statuses,
+                "statuses": [_word(status) for status in self._statuses],
                 "written": self._written,
                 "ended": self._ended,
             }
@@ -72,7 +72,7 @@ class TickEncoder:
     def _add_lists(self, message: Json, tick: Tick) -> None:
         """Add what is not empty."""
         if tick.changes:
-            message["changes"] = tick.changes
+            message["changes"] = [(node, _word(status)) for node, status in tick.changes]
         if tick.halts:
             message["halts"] = tick.halts
         if tick.outcomes:
@@ -89,7 +89,7 @@ class TickEncoder:
         reason = outcome.reason
         return {
             "node": outcome.node,
-            "status": outcome.status,
+            "status": _word(outcome.status),
             "reason": None if reason is None else self._reason(reason, tick),
         }
 
@@ -106,3 +106,9 @@ class TickEncoder:
             self._large.begin(write.key, tick.time_s)
             value = self._values.encode(value)
         return {"key": write.key, "value": value, "writer": write.writer}
+
+
+def _word(status: NodeStatus) -> str:
+    """Return a status as a plain word: `to_json` needs several times longer for an enumeration."""
+    word: str = status._value_
+    return word
