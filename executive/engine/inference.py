@@ -13,8 +13,10 @@ from executive.engine.evaluation import CONSTANTS, WRITTEN
 from executive.engine.expression import Expression
 from executive.engine.porttypes import (
     accepts,
+    is_mapping,
     is_sequence,
     item_type,
+    mapping_types,
     type_name,
     union_members,
 )
@@ -79,6 +81,8 @@ class _Inference:
     def _subscript(self, node: ast.Subscript) -> Any:
         self.of(node.slice)
         owner = self.of(node.value)
+        if is_mapping(owner):
+            return mapping_types(owner)[1]
         return item_type(owner) if is_sequence(owner) else Any
 
     def _compare(self, node: ast.Compare) -> Any:
@@ -152,6 +156,8 @@ def _union(*kinds: Any) -> Any:
 
 
 def _field_type(owner: Any, field: str) -> Any:
+    if is_mapping(owner):  # its items are its fields
+        return mapping_types(owner)[1]
     kind = typing.get_origin(owner) or owner
     if owner is Any or not isinstance(kind, type) or kind.__module__ == "numpy":
         return Any

@@ -48,7 +48,9 @@ class Scope:
 
     def key(self, name: str) -> str:
         """Return the key on the blackboard that a name stands for."""
-        return self._keys.get(name, f"{self._path}:{name}")
+        if name not in self._keys:
+            self._keys[name] = f"{self._path}:{name}"
+        return self._keys[name]
 
     def __getitem__(self, name: str) -> object:
         if name in self._defaults and not self._has_source(name):

@@ -13,8 +13,24 @@ from executive.engine.inference import infer
 from executive.engine.porttypes import type_name
 
 PART = Part(0.5, Colour.RED, (1, 2))
-KEYS = {"part": Part, "parts": tuple[Part, ...], "n": int, "x": float, "ok": bool, "s": str}
-VALUES = {"part": PART, "parts": (PART,), "n": 3, "x": 0.5, "ok": True, "s": "red"}
+KEYS = {
+    "table": dict[str, int],
+    "part": Part,
+    "parts": tuple[Part, ...],
+    "n": int,
+    "x": float,
+    "ok": bool,
+    "s": str,
+}
+VALUES = {
+    "table": {"depth": 2},
+    "part": PART,
+    "parts": (PART,),
+    "n": 3,
+    "x": 0.5,
+    "ok": True,
+    "s": "red",
+}
 
 
 @pytest.mark.parametrize(
@@ -26,6 +42,8 @@ VALUES = {"part": PART, "parts": (PART,), "n": 3, "x": 0.5, "ok": True, "s": "re
         ("not ok or n >= 3", True, "bool"),
         ("0 < x < 1", True, "bool"),
         ("parts[0].holes[1]", 2, "int"),
+        ("table.depth + 1", 3, "int"),
+        ("table['depth']", 2, "int"),
         ("n + 1", 4, "int"),
         ("n / 2", 1.5, "float"),
         ("n * x", 1.5, "float"),
