@@ -88,7 +88,9 @@ def _shade(nodes: Sequence[NodeCover]) -> str:
 
 
 def _missing(nodes: Sequence[NodeCover]) -> str:
-    texts = [(node.path, missing_text(node)) for node in nodes if node.missing]
+    missing = [node for node in nodes if node.missing]
+    if not any(node.started for node in nodes):
+        return "never ran" if missing else ""
     several = len(nodes) > 1
-    shown = (f"{path}: {text}" if several else text for path, text in texts)
-    return escape(f"not taken: {'; '.join(shown)}") if texts else ""
+    texts = (f"{n.path}: {missing_text(n)}" if several else missing_text(n) for n in missing)
+    return escape(f"not taken: {'; '.join(texts)}") if missing else ""

@@ -4,6 +4,7 @@ What every node answered in every tick is a table of bytes, 6 MB for an hour of 
 10 Hz. Values of the blackboard stay in the recording; the index knows where they are.
 """
 
+from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -92,7 +93,8 @@ class RunIndex:
         self.writes: dict[str, list[WritePlace]] = {}
         self.writes_in: dict[int, list[WritePlace]] = {}
         self.outcome_codes: dict[int, tuple[tuple[int, str, str], ...]] = {}
-        self._reasons: dict[int, dict[int, Reason | None]] = {}
+        self._reasons: dict[int, list[tuple[int, Reason | None]]] = {}
+        self._halted: dict[int, list[int]] = {}
         self._activations: dict[int, tuple[Activation, ...]] = {}
         visits: dict[tuple[int, ...], NDArray[np.intp]] = {}
         for tick in recording.ticks():
@@ -154,17 +156,17 @@ class RunIndex:
 
     def activation(self, node: int, tick: int) -> Activation | None:
         """Return the life that a node had in a tick, None where it had none."""
-        lives = [life for life in self.activations(node) if life.start <= tick <= life.end]
-        return lives[-1] if lives else None
+        lives = self.activations(node)
+        place = bisect_right(lives, tick, key=lambda life: life.start) - 1
+        return lives[place] if place >= 0 and tick <= lives[place].end else None
 
     def last_end(self, node: int, until: int) -> Activation | None:
         """Return the last life of a node that ended in a tick or before."""
-        ended = (
-            life
-            for life in reversed(self.activations(node))
-            if life.end <= until and life.status is not NodeStatus.RUNNING
-        )
-        return next(ended, None)
+        lives = self.activations(node)
+        place = bisect_right(lives, until, key=lambda life: life.end) - 1
+        if place >= 0 and lives[place].status is NodeStatus.RUNNING:
+            place -= 1  # the recording ends before it did
+        return lives[place] if place >= 0 else None
 
     def ended_ticks(self, node: int) -> NDArray[np.intp]:
         """Return the ticks in which a node answered success or failure."""
@@ -172,13 +174,17 @@ class RunIndex:
 
     def reason(self, node: int, tick: int) -> Reason | None:
         """Return why a node failed in a tick, as it said itself."""
-        said = self._reasons.get(node, {})
-        before = [number for number in said if number <= tick]
-        return said[before[-1]] if before and self.answers[tick, node] == FAILURE else None
+        said = self._reasons.get(node, [])
+        place = bisect_right(said, tick, key=lambda entry: entry[0]) - 1
+        return said[place][1] if place >= 0 and self.answers[tick, node] == FAILURE else None
 
     def halted_by(self, node: int, tick: int) -> int | None:
         """Return which node halted another in a tick (`RUNNER` is one), None if none did."""
         return next((halt.by for halt in self.halts.get(tick, ()) if halt.node == node), None)
+
+    def halted_ticks(self, node: int) -> list[int]:
+        """Return the ticks in which a node was halted."""
+        return list(self._halted.get(node, ()))
 
     def value_at(self, place: WritePlace) -> object:
         """Return what was written, in its JSON form."""
@@ -198,6 +204,8 @@ class RunIndex:
             row[node] = _CODES[status]
         if tick.halts:
             self.halts[number] = tick.halts
+            for halt in tick.halts:
+                self._halted.setdefault(halt.node, []).append(number)
         if tick.faults:
             self.faults[number] = tick.faults
         self._take_outcomes(tick)
@@ -211,7 +219,7 @@ class RunIndex:
         if not tick.outcomes:
             return
         for end in tick.outcomes:
-            self._reasons.setdefault(end.node, {})[tick.number] = end.reason
+            self._reasons.setdefault(end.node, []).append((tick.number, end.reason))
         self.outcome_codes[tick.number] = tuple(
             (end.node, end.status.value, "" if end.reason is None else end.reason.code)
             for end in tick.outcomes
@@ -244,8 +252,8 @@ class RunIndex:
         answers, count = self.answers[:, node], len(self)
         ran = np.concatenate(([False], self.statuses[:-1, node] == RUNNING))[:count]
         starts = np.flatnonzero((answers != INVALID) & ~ran)
-        halted = [t for t, halts in self.halts.items() if any(h.node == node for h in halts)]
-        ends = np.union1d(np.flatnonzero(answers >= SUCCESS), np.array(halted, np.intp))
+        halted = np.array(self._halted.get(node, []), np.intp)
+        ends = np.union1d(np.flatnonzero(answers >= SUCCESS), halted)
         places = np.searchsorted(ends, starts)
         lives = []
         for start, place in zip(starts.tolist(), places.tolist(), strict=True):

@@ -125,7 +125,7 @@ def _elsewhere(run: PastRun, node: int, tick: int) -> list[str]:
 def why_halted(run: PastRun, node: int, tick: int | None) -> Answer:
     """Return who halted a node in a tick, by default when it was halted last, and why."""
     name = run.names.short(node)
-    halted = [t for t in run.index.halts if run.index.halted_by(node, t) is not None]
+    halted = run.index.halted_ticks(node)
     if tick is None:
         tick = halted[-1] if halted else run.index.last_tick
     by = run.index.halted_by(node, tick)
