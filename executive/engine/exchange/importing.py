@@ -18,6 +18,7 @@ from executive.engine.exchange.plan import Plan, PlannedPort, make_plan, with_sk
 from executive.engine.exchange.skipping import may_skip
 from executive.engine.exchange.translating import TreeTranslator
 from executive.engine.exchange.yamltext import comment_lines, document_text
+from executive.engine.formatting.formatter import format_text
 
 DRY_CELL: Final = "dry"
 MISSION_LIMIT_S: Final = 600.0
@@ -126,7 +127,8 @@ class _Import:
             files[f"{self._options.mission}.yaml"] = self._mission()
         if self._plan.faults:
             raise DocumentError(list(dict.fromkeys(self._plan.faults)))
-        return Imported(MappingProxyType(files), tuple(dict.fromkeys(self._plan.notes)))
+        laid_out = {name: format_text(name, text) for name, text in files.items()}
+        return Imported(MappingProxyType(laid_out), tuple(dict.fromkeys(self._plan.notes)))
 
     def _in_order(self) -> Sequence[str]:
         """Return the trees so that each comes after the trees that use it."""
