@@ -22,6 +22,7 @@ from executive.cli.reported_run import (
     ViewOption,
     run_and_exit,
 )
+from executive.core.errors import InputError
 from executive.engine.checkpoints.choosing import CheckpointInfo, checkpoints, chosen
 from executive.engine.control import RunControl
 from executive.engine.recording.reader import Recording
@@ -94,6 +95,7 @@ def _prepared(
     stack: ExitStack,
 ) -> Prepared:
     info = chosen(earlier, request.wanted)
+    _require_another_file(request.record, earlier.path)
     from executive.app.catalogue import port_types, skills
     from executive.engine.checkpoints.resuming import Consent, recorded_mission, take_up
 
@@ -120,6 +122,14 @@ def _prepared(
         resumption=taken_up.resumption,
     )
     return Prepared(plan, taken_up.tree, taken_up.cell)
+
+
+def _require_another_file(record: Path | None, earlier: Path) -> None:
+    if record is not None and record.resolve() == earlier.resolve():
+        raise InputError(
+            f"--record {record}: is the recording to go on from; got the same file; expected "
+            "another one; try no --record"
+        )
 
 
 def _say_where(info: CheckpointInfo, notes: tuple[str, ...]) -> None:

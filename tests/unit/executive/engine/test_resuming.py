@@ -362,3 +362,15 @@ def test_another_cell_is_refused(tmp_path):
     whole, _ = run(write_mission(tmp_path, TREES["sequence"]), tmp_path / "whole.mcap")
     with pytest.raises(InputError, match="another cable"):
         resume(whole.path, tmp_path / "again.mcap", wanted="two", cell=OtherCell())
+
+
+def test_a_checkpoint_stands_inside_the_guards_and_has_a_path_of_its_own(tmp_path):
+    root = "{skill: work, checkpoint: true, if: size(list) == 4, in: {label: a}}"
+    whole, _ = run(write_mission(tmp_path, root), tmp_path / "whole.mcap")
+    paths = [(node.path, node.kind, node.type) for node in whole.header.nodes]
+    assert paths == [
+        ("m.guard", "guard", "guard"),
+        ("m.checkpoint", "checkpoint", "checkpoint"),
+        ("m", "skill", "work"),
+    ]
+    assert checkpoints(whole) == ()  # a node that does not start has none
