@@ -96,12 +96,12 @@ class RunControl:
 
     @contextmanager
     def interruptible(self) -> Iterator[None]:
-        """Let the signal of an emergency stop break into the block."""
-        self._interruptible = True
+        """Let the signal of an emergency stop break into the block; blocks may be nested."""
+        before, self._interruptible = self._interruptible, True
         try:
             yield
         finally:
-            self._interruptible = False
+            self._interruptible = before
 
     def on_signal(self, number: int, _frame: FrameType | None) -> None:
         """Stop in order on the first signal, at once on the second."""

@@ -116,6 +116,21 @@ def test_a_second_signal_outside_of_a_tick_brakes_from_a_thread_of_its_own():
     assert result.reason.startswith("emergency stop by SIGINT")
 
 
+def test_a_pause_within_a_tick_leaves_the_rest_of_the_tick_interruptible():
+    control, cell = RunControl(), WatchedCell()
+
+    def hang():
+        with control.interruptible():
+            pass
+        signal.raise_signal(signal.SIGINT)
+        signal.raise_signal(signal.SIGINT)
+        raise AssertionError("the second signal must not come back here")
+
+    with stopped_by_signals(control):
+        result = run(Leaf("work", hang), cell, control)
+    assert result.reason.startswith("emergency stop by SIGINT")
+
+
 def test_ctrl_z_pauses_and_lets_go_on(tmp_path):
     control = RunControl()
     rehearsal = Rehearsal(tmp_path, "{skill: swing, in: {steps: 3}}", control=control)
