@@ -46,7 +46,7 @@ def _branches(run: PastRun, node: int) -> Iterator[str]:
             yield "all failed"
     elif kind == "retry":
         yield "first attempt succeeded"
-        if _times(run, node) != 1:
+        if run.times(node) != 1:
             yield "later attempt succeeded"
         yield "gave up"
     elif kind in ("when", "guard"):
@@ -64,12 +64,6 @@ def _can_fail(run: PastRun, node: int) -> list[str]:
     """Return the names of the children that may fail: an assignment never does."""
     nodes = run.index.nodes
     return [nodes[c].name for c in run.index.children[node] if nodes[c].kind != "set"]
-
-
-def _times(run: PastRun, node: int) -> int | None:
-    written = run.written(node)
-    times = getattr(written.spec.model, "times", None) if written else None
-    return times if isinstance(times, int) else None
 
 
 def _conditions(run: PastRun, node: int) -> Mapping[str, Expression]:

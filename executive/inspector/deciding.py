@@ -8,6 +8,7 @@ from executive.inspector.index import Activation, RunIndex
 
 SEQUENCES = ("sequence", "reactive_sequence")
 SELECTORS = ("selector", "reactive_selector")
+CHOOSING = ("if_then_else", "while_do_else")
 REACTIVE = ("reactive_sequence", "reactive_selector")
 
 Decision = tuple[int, int]
@@ -26,6 +27,10 @@ def deciders(index: RunIndex, node: int, tick: int) -> list[Decision]:
         tick: The tick.
     """
     kind, answer = index.nodes[node].kind, index.answer(node, tick)
+    if kind in CHOOSING and answer is not NodeStatus.RUNNING:
+        life = index.activation(node, tick)
+        ends = _ends(index, node, life.start if life else tick, tick)
+        return [(end.node, end.end) for end in ends]
     if _all_agree(kind, answer) or kind == "parallel":
         return _all_that_say(index, node, tick, answer)
     asked = [(child, tick) for child in index.children[node] if index.answers[tick, child]]

@@ -76,6 +76,12 @@ class PastRun:
         """Return a node as its file has it, None where the recording holds no sources."""
         return self.trees.nodes.get(self.index.nodes[node].path)
 
+    def times(self, node: int) -> int | None:
+        """Return how many rounds a retry or repeat has, None where its file gives no number."""
+        written = self.written(node)
+        times = getattr(written.spec.model, "times", None) if written else None
+        return times if isinstance(times, int) else None
+
     def conditions(self, node: int, tick: int) -> list[Condition]:
         """Return what a condition or a guard asked in a tick, in the order of asking."""
         written = self.written(node)

@@ -44,7 +44,8 @@ class Retries:
         activations: How often it started.
         attempts: Attempts in all.
         most: Most attempts in one activation.
-        allowed: Attempts that it allows; None where the recording holds no sources.
+        allowed: Attempts that it allows; None where that is worked out as it
+            runs, or the recording holds no sources.
     """
 
     name: str
@@ -195,9 +196,7 @@ def _retries(run: PastRun) -> list[Retries]:
     for node, recorded in enumerate(run.index.nodes):
         used = attempts(run.index, node) if recorded.kind == "retry" else []
         if used:
-            written = run.written(node)
-            allowed = getattr(written.spec.model, "times", None) if written else None
-            name = run.names.short(node)
+            name, allowed = run.names.short(node), run.times(node)
             found.append(Retries(name, len(used), sum(used), max(used), allowed))
     return found
 

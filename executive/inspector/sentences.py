@@ -111,6 +111,8 @@ def why_asked(run: PastRun, parent: int, child: int, tick: int) -> str:
         return f"guard: {'; '.join(asked) or 'its conditions were asked when it started'}"
     since = run.index.activation(parent, tick)
     started = f", since @{since.start}" if since and since.start < tick else ""
+    if len(run.index.children[parent]) > 1:
+        return f"{kind}: {_place(run, parent, child)}, {_resumed(run, child, tick, kind)}"
     return f"{kind}{_parameters(run, parent)}: passes every tick on to its child{started}"
 
 
@@ -162,7 +164,7 @@ def _rounds(run: PastRun, parent: int, child: int, tick: int) -> str:
     kind = run.index.nodes[parent].kind
     rounds = rounds_until(run, parent, child, tick)
     word = {"retry": "attempt", "repeat": "round", "for_each": "item"}[kind]
-    total = _limit(run, parent)
+    total = run.times(parent)
     text = f"{kind}: {word} {len(rounds)}{f' of {total}' if total else ''}"
     if kind == "for_each":
         return f"{text}{_item(run, parent, tick)}"
@@ -170,12 +172,6 @@ def _rounds(run: PastRun, parent: int, child: int, tick: int) -> str:
     if kind == "retry" and before is not None:
         return f"{text}; attempt {len(rounds) - 1}: {end_with_cause(run, before)}"
     return text
-
-
-def _limit(run: PastRun, node: int) -> int | None:
-    written = run.written(node)
-    times = getattr(written.spec.model, "times", None) if written else None
-    return times if isinstance(times, int) else None
 
 
 def _item(run: PastRun, node: int, tick: int) -> str:
@@ -195,7 +191,7 @@ def _item(run: PastRun, node: int, tick: int) -> str:
 def _parameters(run: PastRun, node: int) -> str:
     written = run.written(node)
     seconds = getattr(written.spec.model, "seconds", None) if written else None
-    return "" if seconds is None else f" of {seconds:g} s"
+    return f" of {seconds:g} s" if isinstance(seconds, int | float) else ""
 
 
 def by_whom(run: PastRun, by: int) -> str:

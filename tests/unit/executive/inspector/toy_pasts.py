@@ -1,5 +1,6 @@
 """Recorded runs of toy trees in YAML whose leaves do as they are told."""
 
+import dataclasses
 import itertools
 from pathlib import Path
 from textwrap import dedent, indent
@@ -74,19 +75,24 @@ def act(name, **wires):
     return f"{{skill: act, name: {name}, in: {{name: {name}{given}}}}}"
 
 
-def past(folder, root, letters, ports="", *, name="a", seed=0, timeout_s=60.0, inputs=None):
-    """Run a tree `t` of which only the root is given; return the recorded run."""
+def past(
+    folder, root, letters, ports="", *, name="a", seed=0, timeout_s=60.0, inputs=None, mission="t"
+):
+    """Run a tree of which only the root is given; return the recorded run.
+
+    Every tick takes 2 ms of the machine's clock, so that equal runs have equal recordings.
+    """
     folder = Path(folder)
     body = indent(dedent(root).strip(), "  ")
-    file = folder / "t.yaml"
-    file.write_text(f"format: 1\ntree: t\n{dedent(ports).strip()}\nroot:\n{body}\n")
+    file = folder / f"{mission}.yaml"
+    file.write_text(f"format: 1\ntree: {mission}\n{dedent(ports).strip()}\nroot:\n{body}\n")
     program = load_program(file, skills=acting(), types=Registry("port type"))
     clock = ManualClock()
     devices = {"script": Script(letters)}
     tree = build(program, devices=devices, clock=clock, inputs=inputs or {})
     header = MissionHeader(
         format=1,
-        mission="t",
+        mission=mission,
         seed=seed,
         tick_hz=10.0,
         timeout_s=timeout_s,
@@ -101,16 +107,30 @@ def past(folder, root, letters, ports="", *, name="a", seed=0, timeout_s=60.0, i
     path = folder / f"{name}.mcap"
     with RecordingWriter(path, header) as writer:
         runner = Runner(
-            tree, ToyCell(clock), tick_hz=10.0, timeout_s=timeout_s, observers=(writer,)
+            tree, ToyCell(clock), tick_hz=10.0, timeout_s=timeout_s, observers=(_Steady(writer),)
         )
         result = runner.run()
         report = RunReport(
-            mission="t", seed=seed, outcome=result.outcome.value, reason=result.reason, claim=None,
-            sim_s=result.sim_s, wall_s=result.wall_s, ticks=result.ticks, actions=(),
+            mission=mission, seed=seed, outcome=result.outcome.value,
+            reason=result.reason, claim=None,
+            sim_s=result.sim_s, wall_s=0.5, ticks=result.ticks, actions=(),
             recording=str(path),
         )  # fmt: skip
         writer.write_result(ResultMessage(report=report, rate=result.rate))
     return PastRun(Recording.open(path))
+
+
+class _Steady:
+    """Hands ticks on as if each had taken 2 ms."""
+
+    def __init__(self, writer):
+        self._writer = writer
+
+    def on_tick(self, tick):
+        self._writer.on_tick(dataclasses.replace(tick, duration_s=0.002))
+
+    def on_streams(self, messages):
+        self._writer.on_streams(messages)
 
 
 class RandomTree:

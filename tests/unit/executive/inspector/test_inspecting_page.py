@@ -1,0 +1,43 @@
+"""The page on inspecting shows what the commands print: each is run, on the runs it speaks of."""
+
+import re
+import shlex
+from pathlib import Path
+
+from toy_pasts import past
+from typer.testing import CliRunner
+
+from executive.cli import main
+
+PAGE = Path(__file__).parents[4] / "docs/inspecting.md"
+SHOWN = re.compile(r"^```console\n\$ cellwright (.*?)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+TREE = re.compile(r"^```yaml\nroot:\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+LETTERS = {
+    "good": {"door": "S", "look": "RRS", "grasp": "RRRF", "open": "S", "lift": "RRS"},
+    "bad": {"door": "SSSSFS", "look": "RRSRS", "grasp": "RRRF", "open": "F", "lift": "S"},
+}
+
+
+def record_runs(folder, page):
+    """Record the two runs that the page speaks of."""
+    (folder / "runs").mkdir()
+    root = TREE.search(page)[1]
+    for name, letters in LETTERS.items():
+        path = past(folder / "runs", root, letters, name=name, mission="pick").recording.path
+        assert path.is_file()
+
+
+def shown(command):
+    """Return what a command prints."""
+    return CliRunner().invoke(main.app, shlex.split(command)).output
+
+
+def test_every_command_of_the_page_prints_what_the_page_shows(tmp_path, monkeypatch):
+    page = PAGE.read_text(encoding="utf-8")
+    record_runs(tmp_path, page)
+    monkeypatch.chdir(tmp_path)
+    found = SHOWN.findall(page)
+    assert len(found) > 8
+    for command, expected in found:
+        printed = "".join(f"{line.rstrip()}\n" for line in shown(command).splitlines())
+        assert printed == expected, command
