@@ -128,3 +128,17 @@ def test_a_snapshot_of_another_cable_is_refused_and_changes_nothing(opened):
         with pytest.raises(InputError, match=message):
             cell.restore(snapshot)
     assert cell.snapshot() == before
+
+
+def test_arms_that_are_told_plan_like_those_that_have_planned_before(opened):
+    cell = opened()
+    goal = {"left": TcpGoal(np.array([-0.2, 0.05, 0.1]))}
+    planned, told, fresh = (PlannedDualArm(cell.driver, seed=1) for _ in range(3))
+    planned.plan(goal)
+    told.recall(planned.memento())
+    assert told.memento() == planned.memento() != fresh.memento()
+    first, second = (arms.plan(goal) for arms in (planned, told))
+    times_s = np.linspace(0.0, first.duration_s, 20)
+    assert all(np.array_equal(first.at(t)[0], second.at(t)[0]) for t in times_s)
+    with pytest.raises(InputError, match="expected the number of plans"):
+        told.recall("nothing")
