@@ -24,13 +24,13 @@ def told(text):
     return set(re.findall(r"`([^`]+)`", prose))
 
 
-@pytest.mark.parametrize("name", [*PORTS, *CONDITIONS, *ENDINGS])
+@pytest.mark.parametrize("name", sorted({*PORTS, *CONDITIONS, *ENDINGS}))
 def test_every_node_and_condition_there_is_in_the_table(name):
     shown = told(IMPORTED) | {f"Switch{n}" for n in range(2, 7)}
     assert name in shown
 
 
-@pytest.mark.parametrize("name", REFUSED)
+@pytest.mark.parametrize("name", sorted(REFUSED))
 def test_every_refusal_is_told(name):
     assert name in told(EXPORTED)
 
