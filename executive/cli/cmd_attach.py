@@ -12,6 +12,7 @@ from rich.console import Console
 from rich.text import Text
 
 from executive.cli.console import print_error, results
+from executive.cli.recordings import RunArgument
 from executive.core.errors import InputError
 from executive.core.registry import closest
 from executive.engine.remote import NotRunningError, send
@@ -31,9 +32,7 @@ _HELP = """\
 
 
 def attach(
-    recording: Annotated[
-        Path, typer.Argument(metavar="RUN", help="Recording of the mission that runs.")
-    ],
+    recording: RunArgument,
     do: Annotated[
         list[str] | None,
         typer.Option("--do", metavar="COMMAND", help="Do this and leave; 'help' lists commands."),

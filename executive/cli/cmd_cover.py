@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from executive.cli.recordings import RunsArgument
 from executive.core.errors import InputError
 from executive.inspector.cover import Cover, cover_run, merged
 from executive.inspector.cover_html import cover_html
@@ -15,9 +16,7 @@ from executive.inspector.past import PastRun
 
 
 def cover(
-    recordings: Annotated[
-        list[Path], typer.Argument(metavar="RUN...", help="Recordings of runs of one tree.")
-    ],
+    recordings: RunsArgument,
     fail_under: Annotated[
         float | None,
         typer.Option(

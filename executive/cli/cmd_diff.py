@@ -8,14 +8,15 @@ from typing import Annotated
 import typer
 
 from executive.cli.console import results
+from executive.cli.recordings import recording_argument
 from executive.inspector.diff import DiffKind, diff_runs
 from executive.inspector.diff_text import diff_lines
 from executive.inspector.past import PastRun
 
 
 def diff(
-    a: Annotated[Path, typer.Argument(metavar="A", help="Recording that is held to be right.")],
-    b: Annotated[Path, typer.Argument(metavar="B", help="Recording that is held against it.")],
+    a: Annotated[Path, recording_argument("A", "Recording that is held to be right")],
+    b: Annotated[Path, recording_argument("B", "Recording that is held against it")],
     ignore_values: Annotated[
         list[str] | None,
         typer.Option(metavar="GLOB", help="Keys or fields whose values count as equal: trace.p*."),

@@ -12,6 +12,7 @@ from rich.text import Text
 
 from executive.cli.console import chatter, results
 from executive.cli.inspect_page import serve_page
+from executive.cli.recordings import RunArgument
 from executive.core.errors import InputError, RecordingError
 from executive.engine.recording.reader import Recording
 from executive.inspector.changes import Change, matching_nodes, status_changes
@@ -24,7 +25,7 @@ _SAME_AS = {"\x1b[C": "n", "\x1b[D": "p", " ": "n"}
 
 
 def inspect(
-    recording: Annotated[Path, typer.Argument(metavar="RUN", help="Recording of a run.")],
+    recording: RunArgument,
     tick: Annotated[int | None, typer.Option(help="Show this tick; -1 is the last record.")] = None,
     changes: Annotated[
         bool, typer.Option("--changes", help="List every change of status.")

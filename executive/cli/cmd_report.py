@@ -8,6 +8,7 @@ from typing import Annotated
 
 import typer
 
+from executive.cli.recordings import RunsArgument
 from executive.core.errors import InputError
 from executive.inspector.junit import junit
 from executive.inspector.past import PastRun
@@ -30,7 +31,7 @@ class Format(StrEnum):
 
 
 def report(
-    recordings: Annotated[list[Path], typer.Argument(metavar="RUN...", help="Recordings of runs.")],
+    recordings: RunsArgument,
     form: Annotated[Format, typer.Option("--format", help="Form of the report.")] = Format.TEXT,
     output: Annotated[
         Path | None, typer.Option("-o", "--output", metavar="FILE", help="Write it to a file.")

@@ -1,13 +1,13 @@
 """`cellwright ticks`: what each tick of a recording changed."""
 
 import json
-from pathlib import Path
 from typing import Annotated
 
 import typer
 from rich.text import Text
 
 from executive.cli.console import results
+from executive.cli.recordings import RunArgument
 from executive.core.errors import InputError
 from executive.inspector.answer_view import ticks_document, ticks_lines
 from executive.inspector.past import PastRun
@@ -16,7 +16,7 @@ from executive.inspector.tick_list import TickFilter, tick_list
 
 
 def ticks(
-    recording: Annotated[Path, typer.Argument(metavar="RUN", help="Recording of a run.")],
+    recording: RunArgument,
     node: Annotated[
         str | None, typer.Option(metavar="GLOB", help="Only nodes that match, by path or name.")
     ] = None,

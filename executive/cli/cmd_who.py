@@ -1,25 +1,24 @@
 """`cellwright who` and `history`: where a value of the blackboard came from."""
 
 import json
-from pathlib import Path
 from typing import Annotated
 
 import typer
 from rich.text import Text
 
 from executive.cli.console import results
+from executive.cli.recordings import RunArgument
 from executive.inspector.answer_view import written_document, written_view
 from executive.inspector.brief import brief
 from executive.inspector.names import split_at
 from executive.inspector.past import PastRun
 from executive.inspector.provenance import who_wrote
 
-Run = Annotated[Path, typer.Argument(metavar="RUN", help="Recording of a run.")]
 Json = Annotated[bool, typer.Option("--json", help="Print JSON on stdout.")]
 
 
 def who(
-    recording: Run,
+    recording: RunArgument,
     key: Annotated[
         str,
         typer.Argument(
@@ -45,7 +44,7 @@ def who(
 
 
 def history(
-    recording: Run,
+    recording: RunArgument,
     key: Annotated[str, typer.Argument(metavar="KEY", help="A key by name, full name or glob.")],
     as_json: Json = False,
 ) -> None:

@@ -1,12 +1,12 @@
 """`cellwright why`, `why-not`, `why-halted`: what decided, from the root down."""
 
 import json
-from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from executive.cli.console import results
+from executive.cli.recordings import RunArgument
 from executive.inspector.answer_view import answer_document, answer_view
 from executive.inspector.names import split_at
 from executive.inspector.past import PastRun
@@ -16,7 +16,6 @@ from executive.inspector.why import why_ended
 from executive.inspector.why_not import why_halted as who_halted
 from executive.inspector.why_not import why_not as why_it_did_not
 
-Run = Annotated[Path, typer.Argument(metavar="RUN", help="Recording of a run.")]
 Node = Annotated[
     str,
     typer.Argument(
@@ -28,7 +27,7 @@ Json = Annotated[bool, typer.Option("--json", help="Print JSON on stdout.")]
 
 
 def why(
-    recording: Run,
+    recording: RunArgument,
     node: Annotated[
         str | None,
         typer.Argument(
@@ -48,14 +47,14 @@ def why(
     _print(run, why_it_did(run, index, tick), as_json)
 
 
-def why_not(recording: Run, node: Node, as_json: Json = False) -> None:
+def why_not(recording: RunArgument, node: Node, as_json: Json = False) -> None:
     """Say which sibling or guard decided that a node did not run in a tick."""
     run = PastRun.open(recording)
     index, tick = _place(run, node)
     _print(run, why_it_did_not(run, index, run.index.last_tick if tick is None else tick), as_json)
 
 
-def why_halted(recording: Run, node: Node, as_json: Json = False) -> None:
+def why_halted(recording: RunArgument, node: Node, as_json: Json = False) -> None:
     """Say who halted a node, and because of what; by default when it was halted last."""
     run = PastRun.open(recording)
     index, tick = _place(run, node)

@@ -106,6 +106,7 @@ def test_bad_breakpoints_are_told_before_anything_moves(start, options, message)
 
 def test_a_mission_that_does_not_run_cannot_be_attached(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
+    Path(RECORDING).touch()
     result = cellwright("attach", RECORDING, "--do", "state")
     assert result.exception is not None
     assert "no running mission" in str(result.exception)
@@ -114,5 +115,6 @@ def test_a_mission_that_does_not_run_cannot_be_attached(tmp_path, monkeypatch):
 @pytest.mark.parametrize("line", ["paus", "force toy_end", "unbreak one", "pause now"])
 def test_bad_lines_are_answered(line, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
+    Path(RECORDING).touch()
     result = cellwright("attach", RECORDING, "--do", line)
     assert any(word in str(result.exception) for word in ("did you mean", "expected", "nothing"))
