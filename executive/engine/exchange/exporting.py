@@ -1,11 +1,9 @@
 """Our trees as XML of BehaviorTree.CPP v4, or every reason why that cannot say them."""
 
 import inspect
-import re
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any, Final
-from xml.sax.saxutils import escape, quoteattr
 
 from executive.core.errors import DocumentError, Fault, InputError
 from executive.core.skill import Port, Skill, input_ports
@@ -28,24 +26,14 @@ from executive.engine.document import (
 from executive.engine.exchange.cpptypes import cpp_type, read_literal, write_literal
 from executive.engine.exchange.dataflow import key_in
 from executive.engine.exchange.scripting import write_assignments, write_condition
-from executive.engine.exchange.vocabulary import LOOPS, SWITCHES
+from executive.engine.exchange.vocabulary import COUNTERPARTS, LOOPS, SWITCHES
+from executive.engine.exchange.xmltext import NOT_XML, XmlElement, printable
 from executive.engine.loader import Program
 from executive.engine.outline import NodeSpec, TreeSpec
 from executive.engine.porttypes import type_name
 from executive.engine.stubs import ScriptedSkill
 from executive.engine.values import Literal, key_of, parse_value
 
-_PLAIN: Final[Mapping[str, str]] = {
-    "sequence": "Sequence",
-    "reactive_sequence": "ReactiveSequence",
-    "selector": "Fallback",
-    "reactive_selector": "ReactiveFallback",
-    "if_then_else": "IfThenElse",
-    "while_do_else": "WhileDoElse",
-    "inverter": "Inverter",
-    "force_success": "ForceSuccess",
-    "force_failure": "ForceFailure",
-}
 _REFUSED: Final[Mapping[str, str]] = {
     "cooldown": "has no counterpart there; try a skill that refuses to start so soon",
     "wait_for": "has no counterpart there that waits between ticks; try a skill that waits",
@@ -60,8 +48,6 @@ _ENDS: Final[Mapping[str, str]] = {
     "on_failure": "_onFailure",
     "on_halt": "_onHalted",
 }
-_QUOTES: Final = {"\n": "&#10;", "\r": "&#13;", "\t": "&#9;"}
-_NOT_XML: Final = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 _IN_ONE_TICK: Final = (
     "a child that answers at once is run again within one tick there, here in the next one"
 )
@@ -81,37 +67,6 @@ class Exported:
     notes: tuple[Fault, ...]
 
 
-@dataclass(slots=True)
-class _Xml:
-    """An element that is going to be written."""
-
-    tag: str
-    attributes: dict[str, str] = field(default_factory=dict)
-    children: list["_Xml"] = field(default_factory=list)
-    text: str = ""
-    comment: str = ""
-
-    def lines(self, level: int = 0) -> Iterable[str]:
-        """Yield the element line by line."""
-        pad = "  " * level
-        if self.comment:
-            yield f"{pad}<!-- {self.comment} -->"
-        attributes = "".join(f" {k}={_quoted(v)}" for k, v in self.attributes.items())
-        if self.children:
-            yield f"{pad}<{self.tag}{attributes}>"
-            for child in self.children:
-                yield from child.lines(level + 1)
-            yield f"{pad}</{self.tag}>"
-        elif self.text:
-            yield f"{pad}<{self.tag}{attributes}>{escape(self.text)}</{self.tag}>"
-        else:
-            yield f"{pad}<{self.tag}{attributes}/>"
-
-
-def _quoted(text: str) -> str:
-    return quoteattr(text, _QUOTES)
-
-
 def export_program(program: Program) -> Exported:
     """Export a tree or a mission with every subtree.
 
@@ -127,11 +82,11 @@ class _Export:
         self._faults: list[Fault] = []
         self._notes: list[Fault] = []
         self._skills: dict[str, type[Skill]] = {}
-        self._builders: Mapping[str, Callable[[NodeSpec, Any], _Xml]] = self._table()
+        self._builders: Mapping[str, Callable[[NodeSpec, Any], XmlElement]] = self._table()
 
-    def _table(self) -> dict[str, Callable[[NodeSpec, Any], _Xml]]:
+    def _table(self) -> dict[str, Callable[[NodeSpec, Any], XmlElement]]:
         return {
-            **dict.fromkeys(_PLAIN, self._plain),
+            **dict.fromkeys(COUNTERPARTS, self._plain),
             "skill": self._skill,
             "subtree": self._subtree,
             "when": self._when,
@@ -151,26 +106,26 @@ class _Export:
     def run(self) -> Exported:
         trees = [self._program.tree, *self._program.subtrees.values()]
         main = self._program.tree.name
-        root = _Xml("root", {"BTCPP_format": "4", "main_tree_to_execute": main})
+        root = XmlElement("root", {"BTCPP_format": "4", "main_tree_to_execute": main})
         root.children = [self._tree(tree) for tree in trees]
         self._note_inputs(self._program.tree)
         models = [*self._models(), *map(_tree_model, trees)]
         if models:
-            root.children.append(_Xml("TreeNodesModel", {}, models))
+            root.children.append(XmlElement("TreeNodesModel", {}, models))
         if self._faults:
             raise DocumentError(self._faults)
         text = "\n".join(['<?xml version="1.0" encoding="UTF-8"?>', *root.lines()])
         return Exported(f"{text}\n", tuple(self._notes))
 
-    def _tree(self, tree: TreeSpec) -> _Xml:
+    def _tree(self, tree: TreeSpec) -> XmlElement:
         about = tree.document.about
         comment = "" if "--" in about or about.endswith("-") else about
         root = self._node(tree.root)
         if tree.document.keep:
             root = self._with_first_values(tree, root)
-        return _Xml("BehaviorTree", {"ID": tree.name}, [root], comment=_printable(comment))
+        return XmlElement("BehaviorTree", {"ID": tree.name}, [root], comment=printable(comment))
 
-    def _with_first_values(self, tree: TreeSpec, root: _Xml) -> _Xml:
+    def _with_first_values(self, tree: TreeSpec, root: XmlElement) -> XmlElement:
         """Set keys once, however often the tree starts: RunOnce is skipped ever after."""
         sets = []
         for key, value in tree.document.keep.items():
@@ -178,8 +133,8 @@ class _Export:
                 sets.append(f"{key} := {write_condition(_as_expression(value))}")
             except InputError as error:
                 self._refuse(tree.root, str(error))
-        once = _Xml("RunOnce", {}, [_Xml("Script", {"code": "; ".join(sets)})])
-        return _Xml("Sequence", {}, [once, root])
+        once = XmlElement("RunOnce", {}, [XmlElement("Script", {"code": "; ".join(sets)})])
+        return XmlElement("Sequence", {}, [once, root])
 
     def _note_inputs(self, tree: TreeSpec) -> None:
         for name in tree.inputs:
@@ -193,7 +148,7 @@ class _Export:
     def _note(self, node: NodeSpec, message: str) -> None:
         self._notes.append(node.fault(message))
 
-    def _node(self, node: NodeSpec) -> _Xml:
+    def _node(self, node: NodeSpec) -> XmlElement:
         model = node.model
         try:
             if model.kind not in self._builders:
@@ -207,14 +162,14 @@ class _Export:
             self._refuse(node, str(error))
             for child in node.children:  # what is wrong below is told in the same pass
                 self._node(child)
-            return _Xml("AlwaysFailure")
+            return XmlElement("AlwaysFailure")
 
-    def _guarded(self, model: NodeModel, built: _Xml) -> _Xml:
+    def _guarded(self, model: NodeModel, built: XmlElement) -> XmlElement:
         if model.about:
             built.attributes["_description"] = _plain_text(model.about)
         if model.while_ is not None:
-            asks = _Xml("ScriptCondition", {"code": write_condition(model.while_)})
-            built = _Xml("ReactiveSequence", {}, [asks, built])
+            asks = XmlElement("ScriptCondition", {"code": write_condition(model.while_)})
+            built = XmlElement("ReactiveSequence", {}, [asks, built])
         if model.if_ is not None:
             built.attributes["_failureIf"] = write_condition(model.if_, turned=True)
         if model.unless is not None:
@@ -228,28 +183,28 @@ class _Export:
                 built.attributes[attribute] = "; ".join(map(write_assignments, parts))
         return built
 
-    def _children(self, node: NodeSpec) -> list[_Xml]:
+    def _children(self, node: NodeSpec) -> list[XmlElement]:
         return [self._node(child) for child in node.children]
 
-    def _plain(self, node: NodeSpec, model: NodeModel) -> _Xml:
-        return _Xml(_PLAIN[model.kind], {}, self._children(node))
+    def _plain(self, node: NodeSpec, model: NodeModel) -> XmlElement:
+        return XmlElement(COUNTERPARTS[model.kind], {}, self._children(node))
 
-    def _skill(self, node: NodeSpec, model: SkillNode) -> _Xml:
+    def _skill(self, node: NodeSpec, model: SkillNode) -> XmlElement:
         skill = self._program.skills.get(model.skill)
         name = foreign_id(model.skill, skill)
         self._skills[name] = skill
         if model.budget_s is not None:
             self._note(node, "budget_s is left out: nothing watches the time of a step there")
         attributes = {"ID": name, **self._wires(model, input_ports(skill))}
-        return _Xml("Action", attributes)
+        return XmlElement("Action", attributes)
 
-    def _subtree(self, _: NodeSpec, model: SubtreeNode) -> _Xml:
+    def _subtree(self, _: NodeSpec, model: SubtreeNode) -> XmlElement:
         tree = self._program.subtrees[model.subtree]
         attributes = {"ID": tree.name, **self._wires(model, tree.inputs)}
         for name, port in tree.inputs.items():
             if name not in model.in_ and not port.required:
                 attributes[name] = _literal_text(port.default, port)
-        return _Xml("SubTree", attributes)
+        return XmlElement("SubTree", attributes)
 
     def _wires(self, model: SkillNode | SubtreeNode, ports: Mapping[str, Port]) -> dict[str, str]:
         wires: dict[str, str] = {}
@@ -261,29 +216,29 @@ class _Export:
             wires[name] = f"{{{reference.removeprefix('$')}}}"
         return wires
 
-    def _when(self, _: NodeSpec, model: WhenNode) -> _Xml:
+    def _when(self, _: NodeSpec, model: WhenNode) -> XmlElement:
         constant = {"true": "AlwaysSuccess", "false": "AlwaysFailure"}.get(model.when.strip())
         if constant:
-            return _Xml(constant)
-        return _Xml("ScriptCondition", {"code": write_condition(model.when)})
+            return XmlElement(constant)
+        return XmlElement("ScriptCondition", {"code": write_condition(model.when)})
 
-    def _set(self, _: NodeSpec, model: SetNode) -> _Xml:
-        return _Xml("Script", {"code": write_assignments(model.set)})
+    def _set(self, _: NodeSpec, model: SetNode) -> XmlElement:
+        return XmlElement("Script", {"code": write_assignments(model.set)})
 
-    def _unset(self, _: NodeSpec, model: UnsetNode) -> _Xml:
-        each = [_Xml("UnsetBlackboard", {"key": key}) for key in model.keys]
-        return each[0] if len(each) == 1 else _Xml("Sequence", {}, each)
+    def _unset(self, _: NodeSpec, model: UnsetNode) -> XmlElement:
+        each = [XmlElement("UnsetBlackboard", {"key": key}) for key in model.keys]
+        return each[0] if len(each) == 1 else XmlElement("Sequence", {}, each)
 
-    def _wait(self, _: NodeSpec, model: WaitNode) -> _Xml:
+    def _wait(self, _: NodeSpec, model: WaitNode) -> XmlElement:
         if model.wait == "forever":
             raise InputError("wait: forever has no counterpart there; try a skill that waits")
-        return _Xml("Sleep", {"msec": _milliseconds(model.wait)})
+        return XmlElement("Sleep", {"msec": _milliseconds(model.wait)})
 
-    def _fail(self, node: NodeSpec, _: NodeModel) -> _Xml:
+    def _fail(self, node: NodeSpec, _: NodeModel) -> XmlElement:
         self._note(node, "the reason is left out: a node fails without one there")
-        return _Xml("AlwaysFailure")
+        return XmlElement("AlwaysFailure")
 
-    def _switch(self, node: NodeSpec, model: ReactiveSwitchBody) -> _Xml:
+    def _switch(self, node: NodeSpec, model: ReactiveSwitchBody) -> XmlElement:
         tag = f"Switch{len(model.cases)}"
         if tag not in SWITCHES:
             raise InputError(f"{len(model.cases)} cases; expected 2 to 6 there, try a selector")
@@ -297,10 +252,10 @@ class _Export:
             attributes[f"case_{i}"] = _plain_text(text)
         children = self._children(node)
         if model.default is None:
-            children.append(_Xml("AlwaysFailure"))
-        return _Xml(tag, attributes, children)
+            children.append(XmlElement("AlwaysFailure"))
+        return XmlElement(tag, attributes, children)
 
-    def _parallel(self, node: NodeSpec, model: ParallelBody) -> _Xml:
+    def _parallel(self, node: NodeSpec, model: ParallelBody) -> XmlElement:
         count = len(node.children)
         need = _needed(model, [child.name for child in node.children])
         possible = count - need + 1  # so many failures put success out of reach
@@ -317,34 +272,36 @@ class _Export:
                 raise InputError(
                     f"on_done: wait needs fail: {possible} to be a ParallelAll there; got {fail}"
                 )
-            return _Xml("ParallelAll", {"max_failures": str(fail)}, children)
+            return XmlElement("ParallelAll", {"max_failures": str(fail)}, children)
         if fail < possible:
             self._note(
                 node,
                 "when enough children succeed and enough fail in one tick, it succeeds here; "
                 "there the first of them decides",
             )
-        return _Xml("Parallel", {"success_count": str(need), "failure_count": str(fail)}, children)
+        return XmlElement(
+            "Parallel", {"success_count": str(need), "failure_count": str(fail)}, children
+        )
 
-    def _retry(self, node: NodeSpec, model: RetryBody) -> _Xml:
+    def _retry(self, node: NodeSpec, model: RetryBody) -> XmlElement:
         if model.delay_s != 0.0:
             raise InputError(
                 "delay_s has no counterpart there; try a sequence of the child after a wait"
             )
         self._note(node, _IN_ONE_TICK)
         times = _times(model.times)
-        return _Xml("RetryUntilSuccessful", {"num_attempts": times}, self._children(node))
+        return XmlElement("RetryUntilSuccessful", {"num_attempts": times}, self._children(node))
 
-    def _repeat(self, node: NodeSpec, model: RepeatBody) -> _Xml:
+    def _repeat(self, node: NodeSpec, model: RepeatBody) -> XmlElement:
         if model.delay_s != 0.0:
             raise InputError("delay_s has no counterpart there; try a wait in a sequence")
         self._note(node, _IN_ONE_TICK)
-        return _Xml("Repeat", {"num_cycles": _times(model.times)}, self._children(node))
+        return XmlElement("Repeat", {"num_cycles": _times(model.times)}, self._children(node))
 
-    def _timeout(self, node: NodeSpec, model: TimeoutBody) -> _Xml:
-        return _Xml("Timeout", {"msec": _milliseconds(model.seconds)}, self._children(node))
+    def _timeout(self, node: NodeSpec, model: TimeoutBody) -> XmlElement:
+        return XmlElement("Timeout", {"msec": _milliseconds(model.seconds)}, self._children(node))
 
-    def _for_each(self, node: NodeSpec, model: ForEachBody) -> _Xml:
+    def _for_each(self, node: NodeSpec, model: ForEachBody) -> XmlElement:
         value = parse_value(model.in_)
         items = value.value if isinstance(value, Literal) else None
         if not isinstance(items, list):
@@ -364,18 +321,18 @@ class _Export:
         key = model.item.removeprefix("$")
         attributes = {"queue": ";".join(texts), "if_empty": "SUCCESS", "value": f"{{{key}}}"}
         self._note(node, "ends one tick after the last item there, here in the same one")
-        return _Xml(tag, attributes, self._children(node))
+        return XmlElement(tag, attributes, self._children(node))
 
-    def _run_once(self, node: NodeSpec, model: RunOnceBody) -> _Xml:
+    def _run_once(self, node: NodeSpec, model: RunOnceBody) -> XmlElement:
         if model.until != "finished":
             raise InputError("until: success has no counterpart there; RunOnce keeps any answer")
-        return _Xml("RunOnce", {"then_skip": "false"}, self._children(node))
+        return XmlElement("RunOnce", {"then_skip": "false"}, self._children(node))
 
-    def _models(self) -> Iterable[_Xml]:
+    def _models(self) -> Iterable[XmlElement]:
         for name, skill in sorted(self._skills.items()):
             about = (inspect.getdoc(skill) or "").partition("\n")[0]
             ports = _port_models(input_ports(skill), skill.OUT)
-            yield _Xml("Action", {"ID": name}, ports, comment=_comment(about))
+            yield XmlElement("Action", {"ID": name}, ports, comment=_comment(about))
 
 
 _ITEMS: Final = {"int": "int", "bool": "bool", "double": "float", "std::string": "str"}
@@ -387,11 +344,11 @@ def foreign_id(name: str, skill: type[Skill]) -> str:
     return stands_for or name
 
 
-def _tree_model(tree: TreeSpec) -> _Xml:
-    return _Xml("SubTree", {"ID": tree.name}, _port_models(tree.inputs, tree.outputs))
+def _tree_model(tree: TreeSpec) -> XmlElement:
+    return XmlElement("SubTree", {"ID": tree.name}, _port_models(tree.inputs, tree.outputs))
 
 
-def _port_models(inputs: Mapping[str, Port], outputs: Mapping[str, Port]) -> list[_Xml]:
+def _port_models(inputs: Mapping[str, Port], outputs: Mapping[str, Port]) -> list[XmlElement]:
     found = []
     for tag, ports in (("input_port", inputs), ("output_port", outputs)):
         for name, port in ports.items():
@@ -401,7 +358,7 @@ def _port_models(inputs: Mapping[str, Port], outputs: Mapping[str, Port]) -> lis
             if not port.required and tag == "input_port" and port.default is not None:
                 attributes["default"] = _default_text(port)
             unit = f" [{port.unit}]" if port.unit else ""
-            found.append(_Xml(tag, attributes, text=_printable(f"{port.about}{unit}".strip())))
+            found.append(XmlElement(tag, attributes, text=printable(f"{port.about}{unit}".strip())))
     return found
 
 
@@ -410,25 +367,21 @@ def _default_text(port: Port) -> str:
     try:
         return _literal_text(port.default, port)
     except InputError:
-        return _printable(str(port.default))
+        return printable(str(port.default))
 
 
-def _named(element: _Xml, name: str) -> dict[str, str]:
+def _named(element: XmlElement, name: str) -> dict[str, str]:
     """Put the name of a node behind its ID, before its ports."""
     first = {k: v for k, v in element.attributes.items() if k == "ID"}
     return {**first, "name": name, **element.attributes}
 
 
 def _comment(text: str) -> str:
-    return "" if "--" in text or text.endswith("-") else _printable(text)
-
-
-def _printable(text: str) -> str:
-    return _NOT_XML.sub(" ", text)
+    return "" if "--" in text or text.endswith("-") else printable(text)
 
 
 def _plain_text(text: str) -> str:
-    if _NOT_XML.search(text):
+    if NOT_XML.search(text):
         raise InputError(f"{text!r} has characters that XML cannot hold")
     return text
 
@@ -463,7 +416,7 @@ def _literal_text(value: object, port: Port) -> str:
 
 
 def _reads_back(text: str, value: object, kind: str) -> bool:
-    if _NOT_XML.search(text) or key_in(text, "") is not None:
+    if NOT_XML.search(text) or key_in(text, "") is not None:
         return False
     try:
         back = read_literal(text, kind)

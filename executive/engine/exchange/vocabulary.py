@@ -13,6 +13,21 @@ CONDITIONS: Final = ("_failureIf", "_successIf", "_skipIf", "_while")
 ENDINGS: Final = ("_onSuccess", "_onFailure", "_onHalted", "_post")
 IGNORED: Final = frozenset({"_uid", "_fullpath", "_description", "_autoremap"})
 
+COUNTERPARTS: Final[Mapping[str, str]] = MappingProxyType(
+    {
+        "sequence": "Sequence",
+        "reactive_sequence": "ReactiveSequence",
+        "selector": "Fallback",
+        "reactive_selector": "ReactiveFallback",
+        "if_then_else": "IfThenElse",
+        "while_do_else": "WhileDoElse",
+        "inverter": "Inverter",
+        "force_success": "ForceSuccess",
+        "force_failure": "ForceFailure",
+    }
+)
+"""What kinds of ours that have no ports there are called there."""
+
 SEQUENCES: Final = frozenset(
     {"Sequence", "ReactiveSequence", "SequenceWithMemory", "AsyncSequence"}
 )
