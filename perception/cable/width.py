@@ -1,10 +1,24 @@
-"""Cable pixels and the cable's width, whichever of cable and table is the brighter."""
+"""The cable's width, and its pixels, whichever of cable and table is the brighter."""
 
+import cv2
 import numpy as np
 
 from perception.cable.mask import CableMask, find_mask
+from perception.cable.tracers.centre_line import arc_lengths, point_at, tangents
 from perception.cable.types import Points
 from perception.camera import GreyImage
+
+# How far to either side of a line its profile is looked at, and where only table is seen.
+REACH_PX, TABLE_PX = 20.0, 12.0
+FINE_PX = 0.25
+# The line may lie so far off the cable's middle.
+ASIDE_PX = 2.0
+# Cables are round and darker at their sides: there the profile has sunk to this share.
+BORDER = 0.28
+# A mask this much wider than the profile is of something else.
+WIDER = 0.75
+# A profile must rise above its own noise by this factor, and by so many grey values.
+CLEAR, LEAST = 4.0, 8.0
 
 
 def mask_under(image: GreyImage, on_cable_px: Points) -> CableMask | None:
@@ -23,3 +37,59 @@ def mask_under(image: GreyImage, on_cable_px: Points) -> CableMask | None:
         key=lambda mask: (float(mask.cable[rows, columns].mean()), mask.contrast),
         default=None,
     )
+
+
+def cable_width(image: GreyImage, start_px: Points) -> float | None:
+    """Return the width of the cable that starts at some points; None where no cable is seen.
+
+    The mask knows the cable's width from all of its length, unless it took something else for
+    cable; the profile at the start is of this cable, unless others lie beside it.
+
+    Args:
+        image: Grey image.
+        start_px: First points of the cable, in order, shape (N, 2), N >= 1.
+    """
+    mask = mask_under(image, start_px)
+    across = width_across(image, start_px) if len(start_px) > 1 else None
+    if mask is None:
+        return across
+    if across is None or across > WIDER * mask.width_px:
+        return mask.width_px
+    return across
+
+
+def width_across(image: GreyImage, line_px: Points) -> float | None:
+    """Return the cable's width from its profile across a piece of its centre line.
+
+    Args:
+        image: Grey image.
+        line_px: Points along the piece, shape (N, 2), N >= 2.
+
+    Returns:
+        From border to border [px]; None where the profile shows no cable.
+    """
+    profiles = _profiles(image, line_px)
+    offsets = np.linspace(-REACH_PX, REACH_PX, profiles.shape[1])
+    far, near = np.abs(offsets) > TABLE_PX, np.abs(offsets) <= ASIDE_PX
+    profile = profiles.mean(axis=0) - float(np.median(profiles[:, far]))
+    noise = float(np.median(np.abs(profile[far])))
+    middle = float(np.median(profile[near]))
+    if abs(middle) < max(CLEAR * noise, LEAST):
+        return None
+    low = np.sign(middle) * profile < BORDER * abs(middle)
+    left, right = (offsets[low & side] for side in (offsets < 0.0, offsets > 0.0))
+    return float(right.min() - left.max()) if len(left) and len(right) else None
+
+
+def _profiles(image: GreyImage, line_px: Points) -> Points:
+    """Return grey values across a line, smoothed along it, one row a pixel of it."""
+    arcs = arc_lengths(line_px)
+    points = point_at(line_px, arcs, np.arange(0.0, arcs[-1] + 0.5))
+    along = tangents(points, 4)
+    across = np.column_stack([-along[:, 1], along[:, 0]])
+    offsets = np.linspace(-REACH_PX, REACH_PX, int(2 * REACH_PX / FINE_PX) + 1)
+    places = (points[:, None] + offsets[None, :, None] * across[:, None]).astype(np.float32)
+    values = cv2.remap(
+        image, places[..., 0], places[..., 1], cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE
+    )
+    return np.asarray(values, dtype=float)

@@ -23,7 +23,7 @@ def random_curve(rng: np.random.Generator, extent: float) -> Points:
             chosen.append(point)
         if len(chosen) == wanted:
             break
-    return through(np.array(chosen), rng.uniform(0.7, 2.5))
+    return through(np.array(chosen), rng.uniform(1.0, 5.0))
 
 
 def dense_curve(rng: np.random.Generator, extent: float) -> Points:
@@ -63,7 +63,7 @@ def coil_curve(rng: np.random.Generator, extent: float) -> Points:
     coil = coil[:: rng.choice([1, -1])]
     leaving = [_leave(rng, coil[2] - coil[0], coil[0], extent)[::-1]]
     leaving.append(_leave(rng, coil[-3] - coil[-1], coil[-1], extent))
-    return through(np.vstack([leaving[0], coil, leaving[1]]), rng.uniform(0.5, 1.5))
+    return through(np.vstack([leaving[0], coil, leaving[1]]), rng.uniform(0.8, 3.0))
 
 
 def _leave(rng: np.random.Generator, inwards: Points, start: Points, extent: float) -> Points:
@@ -144,7 +144,7 @@ def parallel_curve(rng: np.random.Generator, extent: float) -> Points:
     bulge = there[-1] + turn / max(float(np.linalg.norm(turn)), 1e-6) * rng.uniform(1.0, 8.0)
     bulge += rng.normal(0.0, 1.5, 2)
     waypoints = np.vstack([there[::6], bulge, back[::6]])
-    return through(waypoints, rng.uniform(0.5, 1.2))
+    return through(waypoints, rng.uniform(0.5, 4.0))
 
 
 def beside(rng: np.random.Generator, curve: Points) -> Points:
@@ -155,7 +155,9 @@ def beside(rng: np.random.Generator, curve: Points) -> Points:
     wander = gaussian_filter1d(rng.normal(size=len(curve)), rng.uniform(10.0, 40.0), mode="wrap")
     wander *= rng.uniform(0.3, 2.0) / max(float(wander.std()), 1e-9)
     offset = wander + rng.choice([-1.0, 1.0]) * rng.uniform(0.0, 2.2)
-    return resample(gaussian_filter1d(curve + normal * offset[:, None], 2.0, axis=0))
+    moved = curve + normal * offset[:, None]
+    # Stiff cables change their curvature slowly, also where they touch and part again.
+    return resample(gaussian_filter1d(moved, rng.uniform(2.0, 9.0), axis=0, mode="nearest"))
 
 
 FAMILIES: dict[str, Callable[[np.random.Generator, float], Points]] = {

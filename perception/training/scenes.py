@@ -19,12 +19,12 @@ FirstOver = Callable[[float, float], bool | None]
 
 MOST_NODES = 1400
 SHARES = {
-    "random": 0.14,
-    "parallel": 0.18,
-    "dense": 0.18,
+    "random": 0.12,
+    "parallel": 0.14,
+    "dense": 0.14,
     "coil": 0.12,
-    "tight": 0.16,
-    "settled": 0.22,
+    "tight": 0.13,
+    "settled": 0.35,
 }
 
 

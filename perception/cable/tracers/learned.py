@@ -15,12 +15,12 @@ from perception.cable.tracers.centre_line import arc_lengths, point_at
 from perception.cable.tracers.modes import find_modes
 from perception.cable.tracers.paths import Ends, Path, checked
 from perception.cable.tracers.rivals import RivalConfig, reduced
-from perception.cable.tracers.steps import StepModel, TracingView, make_view
+from perception.cable.tracers.steps import StepModel
 from perception.cable.types import Endpoint, Points, Trace, TraceEnd
-from perception.cable.width import mask_under
+from perception.cable.width import cable_width
 from perception.camera import GreyImage
-from perception.models.frames import ScaledImage
-from perception.models.tracer_crop import STEP
+from perception.models.frames import ScaledImage, scale_image
+from perception.models.tracer_crop import STEP, WIDTH
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,23 +65,23 @@ class LearnedTracer:
     ) -> Trace | None:
         """Follow the cable that starts at `start_px`; see `Tracer.trace`."""
         start_px = np.atleast_2d(np.asarray(start_px, dtype=float))
-        mask = mask_under(image, start_px)
-        if mask is None:
+        width_px = cable_width(image, start_px)
+        if width_px is None:
             return None
-        view = make_view(image, mask, self._model.zoom)
+        scaled = scale_image(image, width_px, WIDTH, self._model.zoom)
         far = [
             end
             for end in endpoints
-            if np.linalg.norm(end.position_px - start_px[0]) > 3.0 * mask.width_px
+            if np.linalg.norm(end.position_px - start_px[0]) > 3.0 * width_px
         ]
         ends = Ends(
-            view.image.into(np.array([end.position_px for end in far]).reshape(-1, 2)),
+            scaled.into(np.array([end.position_px for end in far]).reshape(-1, 2)),
             np.array([end.direction for end in far]).reshape(-1, 2),
         )
-        starts = self._starts(view.image.into(start_px), endpoints, view.image)
-        best = self._search(view, starts, ends)[0]
+        starts = self._starts(scaled.into(start_px), endpoints, scaled)
+        best = self._search(scaled, starts, ends)[0]
         return Trace(
-            points_px=view.image.back(best.points),
+            points_px=np.vstack([start_px[:1], scaled.back(best.points)]),
             end=best.end or TraceEnd.LOST,
             # Ways that met more than once are counted more than once.
             probability=float(np.exp(min(best.log_probability, 0.0))),
@@ -102,13 +102,13 @@ class LearnedTracer:
         ways = known[:1] or list(np.column_stack([np.cos(turns), np.sin(turns)]))
         return [_fresh(np.vstack([points[0] - STEP * way, points[0]])) for way in ways]
 
-    def _search(self, view: TracingView, starts: list[Path], ends: Ends) -> list[Path]:
+    def _search(self, image: ScaledImage, starts: list[Path], ends: Ends) -> list[Path]:
         """Return ended paths, likeliest first."""
         alive, done = starts, list[Path]()
         for _ in range(self._config.most_steps):
             if not alive:
                 break
-            ahead = [checked(path, view.image, ends) for path in self._expand(view, alive)]
+            ahead = [checked(path, image, ends) for path in self._expand(image, alive)]
             rivals = reduced(done + ahead, self._config.rivals)
             floor = rivals[0].log_probability - self._config.window
             rivals = [path for path in rivals if path.log_probability > floor]
@@ -117,11 +117,11 @@ class LearnedTracer:
         done += [path.ended(TraceEnd.LOST) for path in alive]
         return sorted(done, key=lambda path: -path.log_probability)
 
-    def _expand(self, view: TracingView, paths: list[Path]) -> list[Path]:
+    def _expand(self, image: ScaledImage, paths: list[Path]) -> list[Path]:
         """Return every way in which paths may go on or end."""
         config = self._config
         ahead = []
-        for path, outlook in zip(paths, self._model.outlooks(view, paths), strict=True):
+        for path, outlook in zip(paths, self._model.outlooks(image, paths), strict=True):
             modes = find_modes(outlook.cells, config.least, config.modes)
             end = config.end_odds * outlook.end
             believed = [end, *(mode.probability for mode in modes)]
