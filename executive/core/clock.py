@@ -38,17 +38,23 @@ class MonotonicClock:
 class MissionClock:
     """The clock of a cell without the time for which a mission was paused.
 
-    Timeouts and delays of a tree are on it, so that no pause makes them pass.
+    Timeouts and delays of a tree are on it, so that no pause makes them pass. In a run it stands
+    during a tick: what nodes decide by it is then known from the time of the tick alone.
     """
 
     def __init__(self, clock: Clock) -> None:
-        """Bind the clock of a cell; nothing is left out yet."""
+        """Bind the clock of a cell; nothing is left out yet, and it goes on."""
         self._clock = clock
         self._paused_s = 0.0
+        self._held_s: float | None = None
 
     def now_s(self) -> float:
-        """Return the time of the cell less all pauses [s]."""
-        return self._clock.now_s() - self._paused_s
+        """Return the time of the cell less all pauses [s], or the one that it is held at."""
+        return self._clock.now_s() - self._paused_s if self._held_s is None else self._held_s
+
+    def hold(self, time_s: float) -> None:
+        """Stand at a time of the cell's clock [s] until the next call."""
+        self._held_s = time_s - self._paused_s
 
     def sleep_until(self, time_s: float) -> None:
         """Wait on the clock of the cell."""

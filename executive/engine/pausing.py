@@ -67,14 +67,15 @@ class Pauses:
                 policies[running[leaf]] = leaf.pause()
 
         errors = each_guarded(running, pause, self._error_of)
-        self._tell_of("paused", policies)
+        self._tell_of("paused", began_s, policies)
         skills = [leaf for leaf in running if isinstance(leaf, SkillBehaviour)]
         while self._control.paused and not errors:
             errors += self._settle(skills)
+        ended_s = self._clock.now_s()
         if not errors and not self._control.stop_reason:
             errors += each_guarded(skills, lambda leaf: leaf.resume(), self._error_of)
-            self._tell_of("resumed", policies)
-        paused_s = self._clock.now_s() - began_s
+            self._tell_of("resumed", ended_s, policies)
+        paused_s = ended_s - began_s
         self._tree.clock.skip(paused_s)
         return paused_s, errors
 
@@ -99,11 +100,14 @@ class Pauses:
         return errors
 
     def _tell_of(
-        self, state: Literal["paused", "resumed"], policies: dict[int, PausePolicy]
+        self,
+        state: Literal["paused", "resumed"],
+        time_s: float,
+        policies: dict[int, PausePolicy],
     ) -> None:
         message = PauseMessage(
             state=state,
-            time_s=self._clock.now_s(),
+            time_s=time_s,
             by=self._control.pause_by,
             leaves=tuple(PausedLeaf(node, policy) for node, policy in policies.items()),
         )

@@ -234,6 +234,7 @@ class Runner:
     def _tick(self) -> _Ending | None:
         self._watch()
         now_s = self._clock.now_s()
+        self._tree.clock.hold(now_s)
         with self.control.interruptible():
             tick, error = self._probe.tick(self._number, now_s)
         tick = self._with_notes(tick)

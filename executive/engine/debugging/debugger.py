@@ -16,6 +16,7 @@ from py_trees.common import Status
 
 from executive.core.errors import InputError
 from executive.core.outcome import RUNNING, Outcome, failure, success
+from executive.core.outcome import Status as Answer
 from executive.core.registry import closest
 from executive.core.world import StreamMessage
 from executive.engine.builder import BuiltTree
@@ -320,7 +321,10 @@ class Debugger:
         if once:
             with self._lock:
                 self._forced.pop(index, None)
+        self._note(index, "answered", "the debugger", outcome.status)
         return outcome
 
-    def _note(self, node: int, what: str, by: str) -> None:
-        self._notes.append(InterventionMessage(tick=self._tick, node=node, what=what, by=by))
+    def _note(self, node: int, what: str, by: str, answer: Answer | None = None) -> None:
+        self._notes.append(
+            InterventionMessage(tick=self._tick, node=node, what=what, by=by, answer=answer)
+        )

@@ -9,6 +9,7 @@ from typing import Literal
 
 from pydantic import BaseModel, ConfigDict, Field, JsonValue
 
+from executive.core.outcome import Status
 from executive.core.skill import PausePolicy
 from executive.engine.blackboard import Write
 from executive.engine.rate import RateReport
@@ -136,13 +137,15 @@ class PauseMessage(_Message):
 class InterventionMessage(_Message):
     """Something outside the tree answers in the place of a node, or no longer does.
 
-    `what` says it in words, such as `force failure once`; `by` says who asked for it.
+    `what` says it in words, such as `force failure once`; `by` says who asked for it. `answer` is
+    what it answered in this tick in the place of the node, None where that is only arranged.
     """
 
     tick: int
     node: int
     what: str
     by: str
+    answer: Status | None = None
 
 
 class ActionReport(_Message):
