@@ -161,10 +161,11 @@ class Skill(ABC):
         Raises:
             TypeError: The skill returned no outcome, or one that it does not declare.
         """
-        if self._generator is None:
+        generator = self._generator
+        if generator is None:
             raise TypeError(f"{type(self).__name__}: stepped before it was started")
         try:
-            next(self._generator)
+            next(generator)
         except StopIteration as end:
             self._generator = None
             return self._checked(end.value)
@@ -192,7 +193,7 @@ class Skill(ABC):
                 f"{name}: failure code {outcome.reason.code!r} is not listed in REASONS "
                 f"(known: {', '.join(sorted(self.REASONS)) or 'none'})"
             )
-        if outcome.status is Status.SUCCESS and set(outcome.outputs) != set(self.OUT):
+        if outcome.status is Status.SUCCESS and outcome.outputs.keys() != self.OUT.keys():
             raise TypeError(
                 f"{name}: success must give {sorted(self.OUT)}; got {sorted(outcome.outputs)}"
             )

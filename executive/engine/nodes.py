@@ -8,12 +8,12 @@ from py_trees.common import Status
 
 from executive.core.errors import InputError
 from executive.core.outcome import Outcome, failure, success
-from executive.core.outcome import Status as SkillStatus
+from executive.core.outcome import Status as Answer
 from executive.engine.expression import Expression
 from executive.engine.scope import Scope
 from executive.engine.supervision import RAISED, Supervision
 
-_STATUS = {status: Status[status.value] for status in SkillStatus}
+_SUCCESS = success()
 
 
 class Leaf(Behaviour):
@@ -34,15 +34,31 @@ class Leaf(Behaviour):
         try:
             self.outcome = self.answer()
         except Exception as cause:
-            if self._supervision.on_error == "end":
-                raise
-            self._supervision.note_raised(self._path, cause)
-            self._clean_up()
-            self.outcome = failure(RAISED, f"{type(cause).__name__}: {cause}")
-        return _STATUS[self.outcome.status]
+            self.outcome = self.raised(cause)
+        return status_of(self.outcome)
+
+    def raised(self, cause: Exception) -> Outcome:
+        """Return what an exception comes to where the mission goes on after it.
+
+        Raises:
+            Exception: `cause`, where it does not.
+        """
+        if self._supervision.on_error == "end":
+            raise cause
+        self._supervision.note_raised(self._path, cause)
+        self._clean_up()
+        return failure(RAISED, f"{type(cause).__name__}: {cause}")
 
     def _clean_up(self) -> None:
         """Stop what the leaf has set in motion before it raised."""
+
+
+def status_of(outcome: Outcome) -> Status:
+    """Return what py_trees calls the status of an outcome; asked in every tick of every leaf."""
+    status = outcome.status
+    if status is Answer.RUNNING:
+        return Status.RUNNING
+    return Status.SUCCESS if status is Answer.SUCCESS else Status.FAILURE
 
 
 class Condition(Leaf):
@@ -83,7 +99,7 @@ class Assignment(Leaf):
     def answer(self) -> Outcome:
         """Evaluate and write."""
         assign(self._expressions, self._scope, self._path)
-        return success()
+        return _SUCCESS
 
 
 def answer(expression: Expression, scope: Scope) -> Outcome:
@@ -94,12 +110,12 @@ def answer(expression: Expression, scope: Scope) -> Outcome:
     """
     value = expression.evaluate(scope)
     if value is True:
-        return success()
+        return _SUCCESS
     if value is False:
         return failure("condition.false", f"{expression.text} is false")
     # numpy's own booleans are no bool, but they are what comparisons of arrays' items give.
     if type(value).__name__ == "bool":
-        return success() if value else failure("condition.false", f"{expression.text} is false")
+        return _SUCCESS if value else failure("condition.false", f"{expression.text} is false")
     raise InputError(f"{expression.text!r}: expected true or false, got {value!r}")
 
 

@@ -229,7 +229,8 @@ def check(value: object, kind: Any) -> None:
     Raises:
         ValueError: It has not; the message says `expected ..., got ...`.
     """
-    _fit(value, _bare(kind), literal=False)
+    if type(value) is not kind:
+        _fit(value, _bare(kind), literal=False)
 
 
 def _fit(value: object, kind: Any, *, literal: bool) -> Any:

@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from executive.core.errors import InputError
 from executive.core.skill import REQUIRED
 from executive.engine.blackboard import Blackboard
+from executive.engine.expression import Expression
 from executive.engine.values import Literal, Value, key_of
 
 
@@ -21,7 +22,7 @@ class Scope:
         self._path = path
         self._blackboard = blackboard
         self._keys: dict[str, str] = {}
-        self._inputs: dict[str, tuple[Value, Scope]] = {}
+        self._inputs: dict[str, tuple[Value, Scope, str | None]] = {}
         self._defaults: dict[str, object] = {}
         self._kept: frozenset[str] = frozenset()
 
@@ -36,7 +37,7 @@ class Scope:
         """
         key = key_of(value)
         if key is None or key in outer._inputs or key in outer._defaults:
-            self._inputs[name] = value, outer
+            self._inputs[name] = value, outer, key
         else:
             self._keys[name] = outer.key(key)
         if default is not REQUIRED:
@@ -48,25 +49,28 @@ class Scope:
 
     def key(self, name: str) -> str:
         """Return the key on the blackboard that a name stands for."""
-        if name not in self._keys:
-            self._keys[name] = f"{self._path}:{name}"
-        return self._keys[name]
+        key = self._keys.get(name)
+        if key is None:
+            key = self._keys[name] = f"{self._path}:{name}"
+        return key
 
     def __getitem__(self, name: str) -> object:
         if name in self._defaults and not self._has_source(name):
             return self._defaults[name]
-        if name in self._inputs:
-            return evaluate(*self._inputs[name])
+        source = self._inputs.get(name)
+        if source is not None:
+            value, outer, _ = source
+            return evaluate(value, outer)
         return self._blackboard.read(self.key(name))
 
     def __contains__(self, name: object) -> bool:
         return name in self._defaults or self._has_source(str(name))
 
     def _has_source(self, name: str) -> bool:
-        if name not in self._inputs:
+        source = self._inputs.get(name)
+        if source is None:
             return self.key(name) in self._blackboard
-        value, outer = self._inputs[name]
-        key = key_of(value)
+        _, outer, key = source
         return key is None or key in outer
 
     def write(self, name: str, value: object, writer: str) -> None:
@@ -99,23 +103,35 @@ def evaluate(value: Value, scope: Scope) -> object:
     return value.value if isinstance(value, Literal) else value.evaluate(scope)
 
 
-def inputs_of(
-    wired: Mapping[str, Value], defaults: Mapping[str, object], scope: Scope
-) -> dict[str, object]:
-    """Return the inputs of a leaf that starts.
+class Inputs:
+    """What the inputs of a leaf are wired to; sorted once, read at every start."""
 
-    An input with a default has it while the key that it is wired to has no value.
+    def __init__(
+        self, wired: Mapping[str, Value], defaults: Mapping[str, object], scope: Scope
+    ) -> None:
+        """Keep what is wired; `defaults` are of the inputs that have one."""
+        self._scope = scope
+        self._literals = {p: one.value for p, one in wired.items() if isinstance(one, Literal)}
+        self._expressions = [
+            (port, value, key_of(value) if port in defaults else None)
+            for port, value in wired.items()
+            if isinstance(value, Expression)
+        ]
 
-    Raises:
-        InputError: An input has neither.
-    """
-    values: dict[str, object] = {}
-    for port, value in wired.items():
-        key = key_of(value)
-        if port in defaults and key is not None and key not in scope:
-            continue
-        try:
-            values[port] = evaluate(value, scope)
-        except InputError as error:
-            raise InputError(f"input {port!r}: {error}") from error
-    return values
+    def read(self) -> dict[str, object]:
+        """Return the inputs of a leaf that starts.
+
+        An input with a default is left out while the key that it is wired to has no value.
+
+        Raises:
+            InputError: An input has neither.
+        """
+        values = self._literals.copy()
+        for port, expression, optional in self._expressions:
+            if optional is not None and optional not in self._scope:
+                continue
+            try:
+                values[port] = expression.evaluate(self._scope)
+            except InputError as error:
+                raise InputError(f"input {port!r}: {error}") from error
+        return values

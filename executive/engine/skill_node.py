@@ -9,7 +9,7 @@ from executive.core.outcome import RUNNING, Outcome
 from executive.core.skill import PausePolicy, Port, Skill
 from executive.engine import porttypes
 from executive.engine.nodes import Leaf
-from executive.engine.scope import Scope, inputs_of
+from executive.engine.scope import Inputs, Scope
 from executive.engine.supervision import Supervision
 from executive.engine.values import Value
 
@@ -49,8 +49,8 @@ class SkillBehaviour(Leaf):
         """
         super().__init__(name, path, supervision)
         self._skill, self._scope = skill, scope
-        self._inputs, self._defaults, self._outputs = inputs, defaults, outputs
-        self._ports = ports
+        self._inputs, self._outputs = Inputs(inputs, defaults, scope), outputs
+        self._types = {name: port.type for name, port in ports.items()}
         budgets_s = (budget_s, skill.BUDGET_S, supervision.budget_s, float("inf"))
         self._budget_s = next(one for one in budgets_s if one is not None)
         self._stopwatch_s = stopwatch_s
@@ -67,11 +67,21 @@ class SkillBehaviour(Leaf):
         Raises:
             ClaimError: What it claims is held by a node that goes on.
         """
-        outcome = self._taken() if self._kept is not None else self._advance()
-        for port, key in self._outputs.items():
-            if port in outcome.outputs:
-                self._scope.write(key, outcome.outputs[port], self._path)
+        outcome = self._advance() if self._kept is None else self._taken()
+        if outcome.outputs:
+            self.write(outcome.outputs)
         return outcome
+
+    @property
+    def wired_outputs(self) -> tuple[str, ...]:
+        """Output ports that are wired to a key, in the order in which they are written."""
+        return tuple(self._outputs)
+
+    def write(self, outputs: Mapping[str, object]) -> None:
+        """Write values of output ports to the keys that these are wired to."""
+        for port, key in self._outputs.items():
+            if port in outputs:
+                self._scope.write(key, outputs[port], self._path)
 
     def terminate(self, _: Status) -> None:
         """Halt the skill if it still runs, and give back what it claimed."""
@@ -121,14 +131,15 @@ class SkillBehaviour(Leaf):
             if not self._supervision.claims.take(self._path, self._skill.CLAIMS):
                 return RUNNING
             self._begins = False
-            self._skill.start(inputs_of(self._inputs, self._defaults, self._scope))
-        began_s = self._stopwatch_s()
+            self._skill.start(self._inputs.read())
+        stopwatch_s = self._stopwatch_s
+        began_s = stopwatch_s()
         outcome = self._skill.step()
-        seconds = self._stopwatch_s() - began_s
+        seconds = stopwatch_s() - began_s
         if seconds > self._budget_s:
             self._supervision.note_late(self._path, seconds, self._budget_s)
-        for port, value in outcome.outputs.items():
-            self._check(port, value)
+        if outcome.outputs:
+            self._check(outcome.outputs)
         return outcome
 
     def _taken(self) -> Outcome:
@@ -138,11 +149,12 @@ class SkillBehaviour(Leaf):
         assert kept is not None
         return kept
 
-    def _check(self, port: str, value: object) -> None:
-        try:
-            porttypes.check(value, self._ports[port].type)
-        except ValueError as error:
-            raise TypeError(f"output {port!r}: {error}") from None
+    def _check(self, outputs: Mapping[str, object]) -> None:
+        for port, value in outputs.items():
+            try:
+                porttypes.check(value, self._types[port])
+            except ValueError as error:
+                raise TypeError(f"output {port!r}: {error}") from None
 
     def _clean_up(self) -> None:
         try:
