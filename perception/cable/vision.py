@@ -13,6 +13,7 @@ from perception.cable.bundles import separateness
 from perception.cable.classifiers.continuity import ContinuityClassifier
 from perception.cable.classifiers.edges import EdgeClassifier
 from perception.cable.coverage import explained_share
+from perception.cable.covered_ends import ends_are_clear
 from perception.cable.endpoints import EndpointConfig
 from perception.cable.grasp_points import GraspConfig
 from perception.cable.interfaces import CrossingClassifier, Tracer
@@ -105,8 +106,9 @@ class ClassicCableVision:
     ) -> Trace | None:
         """Follow one cable; see `Tracer.trace`.
 
-        A trace that claims to run from end to end and yet leaves cable out, or lies upon itself
-        so long that crossings hide, is not believed, however sure the tracer was of each step.
+        A trace that claims to run from end to end and yet leaves cable out, lies upon itself so
+        long that crossings hide, or crosses a connector, is not believed, however sure the
+        tracer was of each step.
         """
         seen = self._seen(image)
         trace, observation = self._tracer.trace(seen, start_px, endpoints), observe(seen)
@@ -115,6 +117,7 @@ class ClassicCableVision:
         if trace.end is not TraceEnd.ENDPOINT:
             return trace
         belief = wholeness(observation, trace.points_px) * separateness(trace.points_px)
+        belief *= ends_are_clear(trace.points_px)
         return replace(trace, probability=trace.probability * belief)
 
     def explained_share(self, image: GreyImage, trace: Trace) -> float:
