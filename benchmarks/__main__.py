@@ -15,6 +15,10 @@ BENCHMARKS = {
     "cable-physics": ("benchmarks.cable_physics", "speed of the cable beside PyBullet; knots kept"),
     "ticks": ("benchmarks.ticks", "speed of ticks beside py_trees; cost of a recording"),
     "fuzz": ("benchmarks.fuzz", "random documents: faults, never tracebacks; valid trees run"),
+    "inspecting": (
+        "benchmarks.inspecting",
+        "an hour of recording in the page; cost of watching",
+    ),
     "tracing": ("benchmarks.tracing", "tracers on drawn scenes with exact truth"),
     "untangling": ("benchmarks.untangling", "the untangling mission on fresh seeds"),
 }

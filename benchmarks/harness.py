@@ -76,6 +76,15 @@ def mean(name: str, samples: Sequence[float], unit: str, goal: str = "") -> Row:
     return Row(name, middle, unit, len(values), middle - half, middle + half, goal)
 
 
+def percentile_95(name: str, samples: Sequence[float], unit: str, goal: str = "") -> Row:
+    """Return the 95th percentile with its interval from order statistics."""
+    ordered, n = sorted(samples), len(samples)
+    reach = Z * math.sqrt(n * 0.95 * 0.05)
+    at = [min(n - 1, max(0, round(0.95 * n + step))) for step in (-reach, 0.0, reach)]
+    low, value, high = (ordered[i] for i in at)
+    return Row(name, value, unit, n, low, high, goal)
+
+
 def document(name: str, seed: int, quick: bool, rows: Sequence[Row]) -> str:
     """Return the result document of one run as JSON."""
     content = {

@@ -9,7 +9,6 @@ which nearly every node is ticked every time (`blocks`).
 """
 
 import gc
-import math
 import time
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
@@ -24,7 +23,7 @@ from py_trees.blackboard import Blackboard
 from py_trees.trees import BehaviourTree
 
 from benchmarks import checking
-from benchmarks.harness import Row, median
+from benchmarks.harness import Row, median, percentile_95
 from benchmarks.tick_trees import Node, Scripts, blocks, cell, chain, our_tree, their_tree
 from executive.engine.builder import BuiltTree
 from executive.engine.mission_run import recorded_nodes
@@ -179,7 +178,7 @@ def _recording(ticks: int, seed: int, path: Path) -> list[Row]:
         median("record_mb_per_hour_at_10_hz", [size / ticks * HOUR_TICKS / 1e6], "MB"),
         median("close_hour_s", [closing_s * hours], "s"),
         median("open_hour_s", opening_s, "s", "<= 2"),
-        _p95("seek_ms", seeks_ms, "ms", "<= 100"),
+        percentile_95("seek_ms", seeks_ms, "ms", "<= 100"),
     ]
 
 
@@ -190,7 +189,7 @@ def _reading(path: Path, numbers: NDArray[np.int64]) -> tuple[list[float], list[
         opened: list[Recording] = []
         opening_s.append(cpu_s(partial(_open, path, opened), 1))
         seeks_ms += [1e3 * cpu_s(partial(_seek, opened[0], int(k)), 1) for k in part]
-    return opening_s, sorted(seeks_ms)
+    return opening_s, seeks_ms
 
 
 def _open(path: Path, opened: list[Recording]) -> None:
@@ -201,15 +200,6 @@ def _seek(recording: Recording, number: int) -> None:
     recording.tick(number)
     recording.statuses(number)
     recording.blackboard(number)
-
-
-def _p95(name: str, ordered: Sequence[float], unit: str, goal: str) -> Row:
-    """Return the 95th percentile with its interval from order statistics."""
-    n = len(ordered)
-    reach = 1.96 * math.sqrt(n * 0.95 * 0.05)
-    at = [min(n - 1, max(0, round(0.95 * n + step))) for step in (-reach, 0.0, reach)]
-    low, value, high = (ordered[i] for i in at)
-    return Row(name, value, unit, n, low, high, goal)
 
 
 def header_of(tree: BuiltTree) -> MissionHeader:

@@ -223,6 +223,7 @@ class PageServer:
         self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:
             self._socket.bind((host, port))
+            self._socket.listen()  # who connects before `serve` waits for it
         except OSError as error:
             self._socket.close()
             raise InputError(f"--port {port}: cannot listen on {host}; got {error}") from None
