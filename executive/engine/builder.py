@@ -102,6 +102,7 @@ def build(
     clock: Clock,
     inputs: Mapping[str, object] = MappingProxyType({}),
     seed: int = 0,
+    blackboard: Blackboard | None = None,
 ) -> BuiltTree:
     """Build a checked mission or tree.
 
@@ -111,12 +112,13 @@ def build(
         clock: The cell's clock; timeouts and delays are on it, less pauses.
         inputs: Values of its inputs by name: as in YAML, or of the declared type.
         seed: Seed of the run, for nodes that leave things to chance.
+        blackboard: Where its values go; an empty one, its own if None.
 
     Raises:
         InputError: An input is unknown, missing or does not fit.
         DocumentError: Skills ask for devices that the cell does not have.
     """
-    blackboard = Blackboard()
+    blackboard = Blackboard() if blackboard is None else blackboard
     scope = Scope(program.tree.name, blackboard)
     for name, value in _inputs(program.tree, inputs).items():
         scope.write(name, value, writer="")

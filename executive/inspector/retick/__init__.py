@@ -1,0 +1,1 @@
+"""Ticks a recorded run again without a cell: its leaves answer what the recording says."""

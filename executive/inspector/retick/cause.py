@@ -1,0 +1,114 @@
+"""Why a tick goes another way than it did: the first node that decides otherwise, and by what."""
+
+from collections.abc import Iterator, Mapping
+
+from executive.core.errors import InputError
+from executive.engine.expression import Expression, parse_expression
+from executive.inspector.brief import brief
+from executive.inspector.past import PastRun, terms_of
+from executive.inspector.rebuilt import Rebuilt, WrittenNode
+from executive.inspector.retick.differences import TickDifference
+from executive.inspector.retick.replay import Replay
+
+
+class Causes:
+    """Explains differences right after the tick in which they are."""
+
+    def __init__(self, run: PastRun, replay: Replay, written: Rebuilt) -> None:
+        """Know both sides: `written` are the trees that are ticked, with the values of now."""
+        self._run, self._replay, self._written = run, replay, written
+
+    def of(self, found: TickDifference) -> tuple[str, ...]:
+        """Return why a tick is not as it was, in lines."""
+        if not found.nodes:
+            order = () if found.in_order else ("nodes answer in another order",)
+            return (*order, *(self._write(each.writer) for each in found.writes[:1]))
+        decider = self._decider(found)
+        return tuple(dict.fromkeys(self._reasons(decider, found.tick)))
+
+    def _decider(self, found: TickDifference) -> str:
+        """Return the node that decides: the first to answer otherwise whose own doing it is."""
+        for node in found.nodes:
+            if any(self._reasons(node.path, found.tick)):
+                return node.path
+        return found.nodes[0].path
+
+    def _reasons(self, path: str, tick: int) -> Iterator[str]:
+        old = self._run.index.indices.get(path)
+        new = None if old is None else self._replay.current.get(old)
+        if new is not None and new in self._replay.stand_ins.forced_now:
+            yield f"{self._short(path)} was forced"
+            return
+        yield from self._changed(path)
+        if old is not None:
+            yield from self._conditions(path, old, tick)
+
+    def _write(self, writer: str) -> str:
+        changed = "; ".join(self._changed(writer))
+        return changed or f"{self._short(writer)} writes another value"
+
+    def _changed(self, path: str) -> Iterator[str]:
+        """Yield what the file says otherwise about a node."""
+        before, now = self._run.trees.nodes.get(path), self._written.nodes.get(path)
+        if before is None or now is None:
+            return
+        was, is_now = _own_words(before), _own_words(now)
+        for key in dict.fromkeys([*was, *is_now]):
+            if was.get(key) != is_now.get(key):
+                old, new = was.get(key, "nothing"), is_now.get(key, "nothing")
+                yield f"{self._short(path)}: {key} was {old}, is {new}"
+
+    def _conditions(self, path: str, node: int, tick: int) -> Iterator[str]:
+        """Yield what a condition found then and finds now."""
+        now = self._written.nodes.get(path)
+        if now is None:
+            return
+        asked = {one.keyword: one for one in self._run.conditions(node, tick)}
+        for keyword, expression in now.conditions().items():
+            then, value = asked.get(keyword), self._value(expression, now)
+            if then is not None and value is not None and then.value is not value:
+                terms = ", ".join(self._terms(expression, now))
+                was = "not known" if then.value is None else str(then.value).lower()
+                yield (
+                    f"{self._short(path)}: {expression.text} was {was}, is {str(value).lower()}"
+                    + (f"; {terms}" if terms else "")
+                )
+
+    def _value(self, expression: Expression, node: WrittenNode) -> bool | None:
+        try:
+            return bool(expression.evaluate(node.names.scope))
+        except InputError:
+            return None
+
+    def _terms(self, expression: Expression, node: WrittenNode) -> Iterator[str]:
+        for text in terms_of(expression):
+            try:
+                value = parse_expression(text).evaluate(node.names.scope)
+            except InputError:
+                yield f"{text} has no value now"
+                continue
+            yield f"{text} is {brief(self._replay.board.form(value))}"
+
+    def _short(self, path: str) -> str:
+        return self._run.names.of_path(path)
+
+
+def _own_words(node: WrittenNode) -> Mapping[str, str]:
+    """Return what a file says about a node itself, by key."""
+    model = node.spec.model
+    if node.is_guard:
+        endings = {
+            f"{when}/{key}": text
+            for when, texts in model.endings.items()
+            for key, text in texts.items()
+        }
+        return {**model.guards, **endings}
+    own = model.model_dump(
+        mode="json",
+        by_alias=True,
+        exclude_unset=True,
+        exclude={"children", "child", "cases", "default", "name", "about"},
+    )
+    guards = {*model.guards, *model.endings}
+    words = {key: brief(value) for key, value in own.items() if key not in guards}
+    return {"kind": model.kind, **words}

@@ -1,0 +1,186 @@
+"""Ticks a recorded run again and says where it goes another way."""
+
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from executive.core.registry import Registry
+from executive.engine.ticks import NodeStatus
+from executive.inspector.past import PastRun
+from executive.inspector.rebuilt import Rebuilt
+from executive.inspector.retick.cause import Causes
+from executive.inspector.retick.differences import Comparison, TickDifference
+from executive.inspector.retick.program import ReloadedProgram, reload_program
+from executive.inspector.retick.replay import Repeated, Replay
+from executive.inspector.retick.standins import Asked, Beyond, WhatIf
+
+
+@dataclass(frozen=True, slots=True)
+class Outside:
+    """A skill that was asked in a tick in which the recording has no answer of it.
+
+    Attributes:
+        tick: The tick.
+        path: The skill.
+        why: What the recording knows of it.
+    """
+
+    tick: int
+    path: str
+    why: str
+
+
+@dataclass(frozen=True, slots=True)
+class Retick:
+    """What came of ticking a run again.
+
+    Attributes:
+        ticks: Number of ticks that were ticked again and held against the recording.
+        of_ticks: Number of ticks in the recording.
+        nodes: Number of nodes of the tree that was ticked.
+        first: The first tick that is not as it was; None where all are.
+        causes: Why it is not, in lines.
+        later_ticks: Number of ticks after the first that are not as they were.
+        later_nodes: Nodes that do something else in these, and in how many ticks each.
+        outside: Skills that were asked outside the recording, each once.
+        recorded_end: How the run ended.
+        end: How it ends now.
+        added: Paths of nodes that are only in the tree that was ticked.
+        removed: Paths of nodes that are only in the recording.
+        notes: What else is to be known.
+    """
+
+    ticks: int
+    of_ticks: int
+    nodes: int
+    first: TickDifference | None
+    causes: tuple[str, ...]
+    later_ticks: int
+    later_nodes: tuple[tuple[str, int], ...]
+    outside: tuple[Outside, ...]
+    recorded_end: str
+    end: str
+    added: tuple[str, ...]
+    removed: tuple[str, ...]
+    notes: tuple[str, ...]
+
+    @property
+    def identical(self) -> bool:
+        """Whether every tick of the recording was ticked again, and none went otherwise."""
+        return self.first is None and not self.outside and self.ticks == self.of_ticks
+
+
+def retick(
+    run: PastRun,
+    types: Registry[type],
+    *,
+    edited: Sequence[Path] = (),
+    what_if: WhatIf | None = None,
+    beyond: Beyond | None = None,
+) -> Retick:
+    """Tick a run again with what its skills answered, and hold it against the recording.
+
+    Args:
+        run: The recorded run.
+        types: Types that ports may have, by name.
+        edited: Files of trees that take the place of recorded ones.
+        what_if: What is to be otherwise.
+        beyond: What skills answer outside the recording; None to end there.
+
+    Raises:
+        InputError: The recording holds no trees, or other ones than its node table says.
+        DocumentError: All that is wrong with the trees.
+    """
+    original = reload_program(run.recording.header, types)
+    program = reload_program(run.recording.header, types, edited) if edited else original
+    replay = Replay(run, original, program, types, what_if=what_if or WhatIf(), beyond=beyond)
+    return _Reticking(run, replay, program).result()
+
+
+class _Reticking:
+    """One comparison under way."""
+
+    def __init__(self, run: PastRun, replay: Replay, program: ReloadedProgram) -> None:
+        self._run, self._replay, self._program = run, replay, program
+        self._first: TickDifference | None = None
+        self._causes: tuple[str, ...] = ()
+        self._later: Counter[str] = Counter()
+        self._later_ticks, self._ticks = 0, 0
+        self._last: Repeated | None = None
+
+    def result(self) -> Retick:
+        comparison = Comparison(self._replay, self._run.index)
+        for repeated in self._replay.ticks():
+            self._take(repeated, comparison.of(repeated))
+        paths = {node.path for node in self._replay.tree.nodes}
+        known = self._run.index.indices
+        return Retick(
+            ticks=self._ticks,
+            of_ticks=self._replay.script.length,
+            nodes=len(paths),
+            first=self._first,
+            causes=self._causes,
+            later_ticks=self._later_ticks,
+            later_nodes=tuple(self._later.most_common()),
+            outside=tuple(self._outside()),
+            recorded_end=self._recorded_end(),
+            end=self._end(),
+            added=tuple(node.path for node in self._replay.tree.nodes if node.path not in known),
+            removed=tuple(node.path for node in self._run.index.nodes if node.path not in paths),
+            notes=(),
+        )
+
+    def _take(self, repeated: Repeated, found: TickDifference | None) -> None:
+        if repeated.recorded.number < self._replay.script.length:
+            self._last = repeated
+            self._ticks += not repeated.outside
+        if found is None:
+            return
+        if self._first is None:
+            self._first, self._causes = found, self._explained(found)
+            return
+        self._later_ticks += 1
+        self._later.update(node.path for node in found.nodes)
+
+    def _explained(self, found: TickDifference) -> tuple[str, ...]:
+        header = self._run.recording.header.model_copy(update={"sources": self._program.sources})
+        return Causes(self._run, self._replay, Rebuilt(header, self._replay.board)).of(found)
+
+    def _outside(self) -> Iterator[Outside]:
+        first: dict[int, Asked] = {}
+        for asked in self._replay.stand_ins.outside:
+            first.setdefault(asked.node, asked)
+        for asked in first.values():
+            path = self._replay.tree.nodes[asked.node].path
+            yield Outside(asked.tick, path, self._known_of(asked))
+
+    def _known_of(self, asked: Asked) -> str:
+        if asked.recorded is None:
+            return "it is only in the edited tree"
+        ticks = self._run.index.answers[:, asked.recorded].nonzero()[0]
+        later = ticks[ticks > asked.tick]
+        if not len(ticks):
+            return "it was never asked in the run"
+        when = f"next in tick {later[0]}" if len(later) else f"last in tick {ticks[-1]}"
+        return f"it was asked {when} of the run"
+
+    def _recorded_end(self) -> str:
+        result, last = self._run.recording.result, self._replay.script.length - 1
+        if result is None:
+            return f"the recording ends at tick {last}: the run was killed"
+        return f"{result.report.outcome} at tick {last}"
+
+    def _end(self) -> str:
+        last = self._last
+        if last is None:
+            return "no tick was ticked again"
+        number = last.recorded.number
+        if last.outside:
+            return f"outside the recording at tick {number}"
+        if last.error is not None:
+            return f"error at tick {number}: {last.error}"
+        root = last.answers.get(0, NodeStatus.RUNNING)
+        if root is NodeStatus.RUNNING:
+            return f"still running at tick {number}, where the recording ends"
+        return f"{root.value.lower()} at tick {number}"
