@@ -3,7 +3,7 @@
 from contextlib import ExitStack, closing
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 from rich.console import Console
@@ -12,7 +12,9 @@ from executive.cli.reported_run import (
     BreakOption,
     BreaksOption,
     Debugging,
+    FaultsOption,
     HtmlOption,
+    InjectOption,
     JsonOption,
     PausedOption,
     Prepared,
@@ -20,11 +22,15 @@ from executive.cli.reported_run import (
     Subject,
     TimeoutOption,
     ViewOption,
+    read_lines,
     run_and_exit,
 )
 from executive.cli.settings import apply_settings
 from executive.engine.control import RunControl
 from executive.engine.loader import load_mission
+
+if TYPE_CHECKING:
+    from executive.engine.faults.grammar import Injection
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,6 +42,8 @@ class _Request:
     assignments: tuple[str, ...]
     record: Path | None
     timeout_s: float | None
+    inject: tuple[str, ...]
+    faults: Path | None
 
 
 def run(
@@ -52,6 +60,8 @@ def run(
     breakpoints: BreakOption = None,
     breaks: BreaksOption = None,
     paused: PausedOption = False,
+    inject: InjectOption = None,
+    faults: FaultsOption = None,
     as_json: JsonOption = False,
 ) -> None:
     """Run a mission and record it.
@@ -61,7 +71,9 @@ def run(
     Ctrl-C stops the mission in order; a second one stops the arms at once. Ctrl-Z pauses the
     mission; a second one lets it go on. One that was killed is taken up by `cellwright resume`.
     """
-    request = _Request(mission, seed, tuple(assignments or ()), record, timeout)
+    request = _Request(
+        mission, seed, tuple(assignments or ()), record, timeout, tuple(inject or ()), faults
+    )
 
     def prepare(control: RunControl, console: Console, stack: ExitStack) -> Prepared:
         return _prepared(request, control, console, stack)
@@ -79,6 +91,7 @@ def _prepared(
     settings = apply_settings(
         request.assignments, tuple(mission.document.in_), mission.document.scenario
     )
+    injections = _injections(request)
     # Only now, with the input in order, is it worth loading simulators and planners.
     from executive.app.compose import open_cell
     from executive.engine.builder import build
@@ -91,6 +104,7 @@ def _prepared(
         scenario=settings.scenario,
         timeout_s=mission.document.timeout_s if request.timeout_s is None else request.timeout_s,
         recording=request.record or default_recording(mission.document.name, request.seed),
+        faults=injections,
     )
     with control.interruptible(), console.status(f"opening {mission.document.cell}"):
         cell = open_cell(mission.cell, settings.scenario, request.seed)
@@ -103,3 +117,12 @@ def _prepared(
         seed=request.seed,
     )
     return Prepared(plan, tree, cell)
+
+
+def _injections(request: _Request) -> "tuple[Injection, ...]":
+    from executive.engine.faults.grammar import parse_injection, parse_injection_file
+
+    found = [parse_injection(text) for text in request.inject]
+    if request.faults is not None:
+        found += read_lines(request.faults, parse_injection_file)
+    return tuple(found)

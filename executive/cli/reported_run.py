@@ -5,7 +5,7 @@ from collections.abc import Callable
 from contextlib import ExitStack, closing
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal, NoReturn
+from typing import TYPE_CHECKING, Annotated, Literal, NoReturn, TypeVar
 
 import typer
 from pydantic import JsonValue
@@ -17,9 +17,10 @@ from executive.cli.run_display import RunDisplay
 from executive.core.errors import CellwrightError, InputError
 from executive.core.world import Cell
 from executive.engine.control import EmergencyStopped, RunControl, stopped_by_signals
-from executive.engine.recording.messages import RunReport, SlowNode
+from executive.engine.recording.messages import InjectedReport, RunReport, SlowNode
 from executive.engine.runner import MissionOutcome, one_line
 from executive.engine.ticks import RunObserver
+from executive.inspector.injected import injected_line
 from executive.inspector.views import OUTCOME_STYLES
 
 if TYPE_CHECKING:
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
 
 _BAD_INPUT, _ERROR = 2, MissionOutcome.ERROR.exit_code
 _SLOW_SHOWN = 3
+T = TypeVar("T")
 
 RecordOption = Annotated[
     Path | None,
@@ -57,6 +59,18 @@ BreaksOption = Annotated[
 ]
 PausedOption = Annotated[
     bool, typer.Option("--paused", help="Pause before the first tick; see cellwright attach.")
+]
+InjectOption = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--inject",
+        metavar="FAULT",
+        help="Inject it: 'grasp_*: fail@3', 'trace: hang', 'key frame: stale@2'.",
+    ),
+]
+FaultsOption = Annotated[
+    Path | None,
+    typer.Option("--faults", dir_okay=False, exists=True, help="File of faults, one a line."),
 ]
 JsonOption = Annotated[bool, typer.Option("--json", help="Print one JSON document on stdout.")]
 
@@ -96,11 +110,12 @@ Prepare = Callable[[RunControl, Console, ExitStack], Prepared]
 
 @dataclass(frozen=True, slots=True)
 class _Result:
-    """What it came to: the report, nodes that were too slow, and what was raised on the way."""
+    """What it came to: the report, slow nodes, what was raised on the way, what was injected."""
 
     report: RunReport
     slow: tuple[SlowNode, ...] = ()
     raised: tuple[str, ...] = ()
+    injected: tuple[InjectedReport, ...] = ()
 
 
 def run_and_exit(subject: Subject, prepare: Prepare, *, as_json: bool) -> NoReturn:
@@ -147,7 +162,7 @@ def _recorded_run(
         with RunDisplay(console, recorded_nodes(tree.nodes)) as display:
             observers: tuple[RunObserver, ...] = (display, *live)
             done = run_mission(prepared.plan, tree, prepared.cell, control, observers, debugger)
-    return _Result(done.report, done.slow, done.raised)
+    return _Result(done.report, done.slow, done.raised, done.injected)
 
 
 def _debugger(debugging: Debugging, tree: "BuiltTree", control: RunControl) -> "Debugger":
@@ -158,15 +173,23 @@ def _debugger(debugging: Debugging, tree: "BuiltTree", control: RunControl) -> "
     for text in debugging.breakpoints:
         debugger.add(text)
     if debugging.file is not None:
-        try:
-            breakpoints = parse_breakpoint_file(debugging.file.read_text(encoding="utf-8"))
-        except (InputError, UnicodeDecodeError) as error:
-            raise InputError(f"{debugging.file}: {error}") from None
-        for one in breakpoints:
+        for one in read_lines(debugging.file, parse_breakpoint_file):
             debugger.add(one.text)
     if debugging.paused:
         control.pause("--paused")
     return debugger
+
+
+def read_lines(file: Path, parse: Callable[[str], list[T]]) -> list[T]:
+    """Read a file of breakpoints or faults.
+
+    Raises:
+        InputError: It is none; says which file.
+    """
+    try:
+        return parse(file.read_text(encoding="utf-8"))
+    except (InputError, UnicodeDecodeError) as error:
+        raise InputError(f"{file}: {error}") from None
 
 
 def _live_view(console: Console) -> "LiveView":
@@ -231,6 +254,7 @@ def _print_summary(result: _Result) -> None:
         ("took", Text(took)),
         *(("slow", Text(_too_slow(node))) for node in result.slow[:_SLOW_SHOWN]),
         *(("raised", Text(line)) for line in result.raised),
+        *(("injected", Text(injected_line(one))) for one in result.injected),
         ("recorded", Text(report.recording or "")),
         ("open it", Text(f"cellwright inspect {report.recording}" if report.recording else "")),
     ]

@@ -4,7 +4,7 @@ It belongs to one tree and to nothing else: py_trees' own is one for the whole p
 two missions would see each other's values (trap e11).
 """
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from enum import Enum
 
@@ -32,6 +32,10 @@ class Unset(Enum):
     UNSET = "unset"
 
 
+WriteFilter = Callable[[Write], Write | None]
+"""Returns what is written instead; None where the write is lost."""
+
+
 class Blackboard:
     """Values by key, with the writes since somebody last asked."""
 
@@ -40,9 +44,19 @@ class Blackboard:
         self._values: dict[str, object] = {}
         self._owned: dict[str, set[str]] = {}
         self._writes: list[Write] = []
+        self._filter: WriteFilter | None = None
+
+    def filter_with(self, change: WriteFilter) -> None:
+        """Let something change the writes that follow, for injected faults."""
+        self._filter = change
 
     def write(self, key: str, value: object, writer: str) -> None:
         """Set a key."""
+        if self._filter is not None:
+            write = self._filter(Write(key, value, writer))
+            if write is None:
+                return
+            value = write.value
         if key not in self._values:
             self._owned.setdefault(key.rpartition(":")[0], set()).add(key)
         self._values[key] = value

@@ -21,6 +21,8 @@ from executive.engine.checkpoints.taking import CheckpointRecorder
 from executive.engine.control import RunControl
 from executive.engine.debugging.commands import RunCommands
 from executive.engine.debugging.debugger import Debugger
+from executive.engine.faults.grammar import Injection
+from executive.engine.faults.injector import Injector
 from executive.engine.loader import Mission
 from executive.engine.recording.actions import ActionLog
 from executive.engine.recording.messages import (
@@ -58,6 +60,7 @@ class RunPlan:
         timeout_s: Longest duration on the cell's clock [s]; None for no limit.
         recording: Where the recording goes.
         resumption: The checkpoint that it goes on from; None where it begins.
+        faults: What is injected.
     """
 
     mission: Mission
@@ -67,6 +70,7 @@ class RunPlan:
     timeout_s: float | None
     recording: Path
     resumption: Resumption | None = None
+    faults: tuple[Injection, ...] = ()
 
 
 def run_mission(
@@ -90,8 +94,10 @@ def run_mission(
         debugger: Who may pause it anywhere; its run can be commanded from outside.
 
     Raises:
+        InputError: A fault that is to be injected means nothing in this mission.
         RecordingError: The recording cannot be written.
     """
+    injector = Injector(tree, plan.mission, plan.faults, seed=plan.seed)
     header = mission_header(plan, tree.nodes)
     with RecordingWriter(plan.recording, header) as writer:
         actions, slow = ActionLog(header.nodes), SlowLog(header.nodes)
@@ -102,9 +108,11 @@ def run_mission(
             cell,
             tick_hz=header.tick_hz,
             timeout_s=plan.timeout_s,
-            observers=(writer, actions, slow, *observers),
+            observers=(writer, actions, slow, injector, *observers),
             control=control,
             debugger=debugger,
+            interceptors=(injector.intercept,) if plan.faults else (),
+            interventions=(injector.interventions,),
             past=plan.resumption.past if plan.resumption else None,
         )
         CheckpointRecorder(tree, cell, runner, writer, first=_next_checkpoint(plan.resumption))
@@ -125,7 +133,11 @@ def run_mission(
             recording=str(plan.recording),
         )
         message = ResultMessage(
-            report=report, rate=result.rate, slow=slow.reports(), raised=tuple(raised)
+            report=report,
+            rate=result.rate,
+            slow=slow.reports(),
+            raised=tuple(raised),
+            injected=injector.reports(),
         )
         writer.write_result(message)
     return message
@@ -186,6 +198,7 @@ def mission_header(plan: RunPlan, nodes: Sequence[NodeInfo]) -> MissionHeader:
         versions=versions(),
         started_utc=datetime.now(UTC).isoformat(timespec="seconds"),
         resumed_from=plan.resumption.origin if plan.resumption else None,
+        faults=tuple(fault.text for fault in plan.faults),
     )
 
 

@@ -21,6 +21,7 @@ from executive.engine.checkpoints.past import Moment, Past
 from executive.engine.control import EmergencyStopped, RunControl
 from executive.engine.debugging.debugger import Debugger
 from executive.engine.interception import Interceptor, chained
+from executive.engine.interventions import InterventionLog
 from executive.engine.pausing import Pauses
 from executive.engine.probe import TreeProbe, fault_of
 from executive.engine.rate import Rate, RateReport
@@ -103,6 +104,7 @@ class Runner:
         control: RunControl | None = None,
         debugger: Debugger | None = None,
         interceptors: Sequence[Interceptor] = (),
+        interventions: Sequence[InterventionLog] = (),
         past: Past | None = None,
     ) -> None:
         """Prepare a run; nothing moves yet.
@@ -116,6 +118,7 @@ class Runner:
             control: How to pause and stop it.
             debugger: Who may pause it anywhere and answer for nodes; made with that control.
             interceptors: What stands between nodes and their parents besides.
+            interventions: What these have done, for the recording.
             past: What was before, when it goes on from a checkpoint.
         """
         self._tree, self._cell, self._clock = tree, cell, cell.clock
@@ -127,6 +130,8 @@ class Runner:
             debugger.waits_with(self._wait_in_tick)
             self._observers = (*self._observers, debugger)
         self._interceptors = tuple(interceptors)
+        own = () if debugger is None else (debugger.interventions,)
+        self._interventions = (*own, *interventions)
         self._probe = TreeProbe(tree, chained(self._interceptors))
         self._watched = False
         now_s = self._clock.now_s()
@@ -328,8 +333,8 @@ class Runner:
         self._tell_streams()
 
     def _tell_streams(self, more: Sequence[StreamMessage] = ()) -> None:
-        if self._debugger is not None:
-            more = (*more, *self._debugger.drain_notes(self._clock.now_s()))
+        for log in self._interventions:
+            more = (*more, *log.drain(self._clock.now_s()))
         messages = (*self._cell.drain_streams(), *more)
         for observer in self._observers:
             observer.on_streams(messages)

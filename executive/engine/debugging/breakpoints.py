@@ -17,6 +17,7 @@ from enum import StrEnum
 from executive.core.errors import InputError
 from executive.core.registry import closest
 from executive.engine.expression import Expression, parse_expression
+from executive.engine.line_files import parsed_lines
 
 _SHAPE = re.compile(
     r"^(?P<node>(?!on\b|when\b)\S+)?\s*(?:\bon\s+(?P<event>\S+)(?:\s+(?P<subject>(?!when\b)\S+))?)?"
@@ -97,15 +98,7 @@ def parse_breakpoint_file(text: str) -> list[Breakpoint]:
     Raises:
         InputError: A line is no breakpoint; says which.
     """
-    found = []
-    for number, line in enumerate(text.splitlines(), start=1):
-        content = re.sub(r"(^|\s)#.*$", "", line).strip()
-        if content:
-            try:
-                found.append(parse_breakpoint(content))
-            except InputError as error:
-                raise InputError(f"line {number}: {error}") from None
-    return found
+    return parsed_lines(text, parse_breakpoint)
 
 
 def _number(text: str, event: Event, subject: str) -> float:

@@ -27,8 +27,8 @@ from executive.engine.debugging.stepping import Step, Stride, stride
 from executive.engine.direct import TickCall
 from executive.engine.expression import Expression
 from executive.engine.interception import Junction
+from executive.engine.interventions import InterventionLog
 from executive.engine.node_patterns import matching
-from executive.engine.recording.messages import INTERVENTIONS_TOPIC, InterventionMessage
 from executive.engine.ticks import Tick
 
 FORCED = "debug.forced"
@@ -85,6 +85,7 @@ class Debugger:
     def __init__(self, tree: BuiltTree, control: RunControl) -> None:
         """Watch a tree; `control` is that of its run."""
         self._tree, self._control = tree, control
+        self.interventions = InterventionLog()
         self._leaves = frozenset(node.index for node in tree.nodes if not node.behaviour.children)
         self._lock = threading.RLock()
         self._armed: list[_Armed] = []
@@ -94,7 +95,6 @@ class Debugger:
         self._standing: Standing | None = None
         self._at: int | None = None
         self._tick = 0
-        self._notes: list[InterventionMessage] = []
         self._wait: Callable[[], None] = lambda: None
 
     def waits_with(self, wait: Callable[[], None]) -> None:
@@ -228,17 +228,6 @@ class Debugger:
     def on_streams(self, messages: Sequence[StreamMessage]) -> None:
         """Take what the cell streamed; nothing to do."""
 
-    def drain_notes(self, time_s: float) -> list[StreamMessage]:
-        """Return what was forced since the last call, for the recording."""
-        with self._lock:
-            notes, self._notes = self._notes, []
-        return [
-            StreamMessage(
-                INTERVENTIONS_TOPIC, "InterventionMessage", time_s, note.model_dump_json().encode()
-            )
-            for note in notes
-        ]
-
     def _before(self, index: int, *, starts: bool) -> None:
         if self._stride is not None and self._stride.ends_before(index):
             self._stop_at(Standing("step", self._tick, self._tree.nodes[index].path), index)
@@ -325,6 +314,4 @@ class Debugger:
         return outcome
 
     def _note(self, node: int, what: str, by: str, answer: Answer | None = None) -> None:
-        self._notes.append(
-            InterventionMessage(tick=self._tick, node=node, what=what, by=by, answer=answer)
-        )
+        self.interventions.note(self._tick, node, what, by, answer)

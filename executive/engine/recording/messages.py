@@ -62,7 +62,10 @@ class ResumedFrom(_Message):
 
 
 class MissionHeader(_Message):
-    """The first message: what is run, from which files, with what."""
+    """The first message: what is run, from which files, with what.
+
+    `faults` are those that are to be injected, as they were written.
+    """
 
     format: Literal[1]
     mission: str
@@ -78,6 +81,7 @@ class MissionHeader(_Message):
     versions: dict[str, str] = Field(default_factory=dict)
     started_utc: str
     resumed_from: ResumedFrom | None = None
+    faults: tuple[str, ...] = ()
 
 
 class Keyframe(_Message):
@@ -158,6 +162,15 @@ class ActionReport(_Message):
     reason: str
 
 
+class InjectedReport(_Message):
+    """What came of a fault that was to be injected: at which nodes or keys, and how often."""
+
+    fault: str
+    times: int
+    first_tick: int | None
+    places: tuple[str, ...] = ()
+
+
 class RunReport(_Message):
     """What a run came to, as `cellwright run --json` prints it."""
 
@@ -186,13 +199,15 @@ class SlowNode(_Message):
 class ResultMessage(_Message):
     """The last message of a run that came to its end.
 
-    `slow` has the slowest node first; `raised` is what went wrong without ending the mission.
+    `slow` has the slowest node first; `raised` is what went wrong without ending the mission;
+    `injected` what came of the faults that were to be injected.
     """
 
     report: RunReport
     rate: RateReport
     slow: tuple[SlowNode, ...] = ()
     raised: tuple[str, ...] = ()
+    injected: tuple[InjectedReport, ...] = ()
 
 
 COMPRESSED_IMAGE_SCHEMA: dict[str, JsonValue] = {
