@@ -43,7 +43,7 @@ def test_forced_answers_are_listed_and_recorded(run, recording):
     state = send(recording, "force", nodes="labour", answer="failure", once=True, by="a test")
     assert state["forced"] == {"t/rounds/round/labour": "failure"}
     assert send(recording, "unforce", nodes="labour")["forced"] == {}
-    notes = run.debugger.drain_notes(0.0)
+    notes = run.debugger.interventions.drain(0.0)
     assert [b'"by":"a test"' in note.data for note in notes] == [True, False]
 
 
