@@ -15,6 +15,7 @@ from mcap.reader import NonSeekingReader, SeekingReader
 from mcap.records import Channel, Message, Schema
 from numpy.typing import NDArray
 from pydantic import ValidationError
+from pydantic_core import from_json
 from zstandard import ZstdError
 
 from executive.core.errors import RecordingError
@@ -74,6 +75,21 @@ class RecordedImage:
     number: int
     time_s: float
     png: bytes
+
+
+@dataclass(frozen=True, slots=True)
+class Moves:
+    """What a tick says about nodes, as it is stored.
+
+    Attributes:
+        visited: Nodes that were ticked; None where they are those of the tick before.
+        changes: Node and new status of those whose status changed.
+        halted: Nodes that were halted.
+    """
+
+    visited: Sequence[int] | None
+    changes: Sequence[tuple[int, str]]
+    halted: Sequence[int]
 
 
 class Recording:
@@ -170,6 +186,15 @@ class Recording:
             writes=message.writes,
             faults=message.faults,
             slow=message.slow,
+        )
+
+    def moves(self, number: int) -> Moves:
+        """Return what a tick says about nodes, quicker than all of it is read."""
+        message = from_json(self._raw[number])
+        return Moves(
+            message.get("visited"),
+            message.get("changes", ()),
+            [halt["node"] for halt in message.get("halts", ())],
         )
 
     def statuses(self, number: int) -> tuple[NodeStatus, ...]:

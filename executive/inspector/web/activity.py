@@ -1,5 +1,6 @@
 """What every node did at every tick, as one matrix: the lanes of the page are cut from it."""
 
+from collections.abc import Mapping
 from enum import IntEnum
 
 import numpy as np
@@ -21,7 +22,7 @@ class Code(IntEnum):
     FAILURE = 4
 
 
-_CODES = {
+_CODES: Mapping[str, Code] = {
     NodeStatus.INVALID: Code.NOTHING,
     NodeStatus.SUCCESS: Code.SUCCESS,
     NodeStatus.RUNNING: Code.RUNNING,
@@ -36,22 +37,26 @@ class Activity:
         """Begin without ticks."""
         self._codes: Codes = np.zeros((256, nodes), np.uint8)
         self._statuses: Codes = np.zeros(nodes, np.uint8)
+        self._visited = np.zeros(0, np.intp)
         self._count = 0
 
     def __len__(self) -> int:
         """Return how many ticks are in."""
         return self._count
 
-    def follow(self, recording: Recording) -> None:
-        """Take in the ticks of a recording that are not in yet."""
-        for number in range(self._count, len(recording)):
+    def follow(self, recording: Recording, until: int | None = None) -> None:
+        """Take in the ticks of a recording that are not in yet, up to one that is left out."""
+        end = len(recording) if until is None else min(until, len(recording))
+        for number in range(self._count, end):
             self._make_room()
-            tick, row = recording.tick(number), self._codes[number]
-            for node, status in tick.changes:
+            moves, row = recording.moves(number), self._codes[number]
+            for node, status in moves.changes:
                 self._statuses[node] = _CODES[status]
-            visited = np.fromiter(tick.visited, np.intp, len(tick.visited))
-            row[visited] = self._statuses[visited]
-            row[[halt.node for halt in tick.halts]] = Code.HALTED
+            if moves.visited is not None:
+                self._visited = np.array(moves.visited, np.intp)
+            row[self._visited] = self._statuses[self._visited]
+            if moves.halted:
+                row[moves.halted] = Code.HALTED
             self._count += 1
 
     def lanes(self, first: int, last: int, columns: int) -> Codes:

@@ -26,6 +26,9 @@ from executive.inspector.web.finding import Wish, found
 from executive.inspector.why import why, why_ended
 from executive.inspector.why_not import why_halted, why_not
 
+# Ticks that are taken into the lanes at a time, so that nobody waits long for an answer.
+_STRIDE = 500
+
 
 class Session:
     """One recording, read again as it grows; its methods may be called from any thread."""
@@ -40,8 +43,8 @@ class Session:
         self._lock = threading.RLock()
         self._growing = GrowingRecording(path)
         self._activity = Activity(len(self.recording.header.nodes))
-        self._activity.follow(self.recording)
         self._past: PastRun | None = None
+        threading.Thread(target=self._catch_up, name="lanes", daemon=True).start()
 
     @property
     def recording(self) -> Recording:
@@ -53,20 +56,33 @@ class Session:
         """Whether the run came to its end and said so."""
         return self.recording.result is not None
 
+    @property
+    def complete(self) -> bool:
+        """Whether there is nothing more to tell: the run has ended, and the lanes show it."""
+        return self.ended and len(self._activity) == len(self.recording)
+
     def refresh(self) -> bool:
         """Read what has been written since; return whether there was anything."""
         with self._lock:
             if not self._growing.refresh():
                 return False
-            self._activity.follow(self.recording)
             self._tick_document.cache_clear()
+            if len(self.recording) - len(self._activity) <= _STRIDE:
+                self._activity.follow(self.recording)
             return True
+
+    def _catch_up(self) -> None:
+        """Take in what was there when the page was opened, a little at a time."""
+        while len(self._activity) < len(self.recording):
+            with self._lock:
+                self._activity.follow(self.recording, len(self._activity) + _STRIDE)
 
     def progress(self) -> dict[str, object]:
         """Return how far the run is: what a page needs to hear again and again."""
         result, count = self.recording.result, len(self.recording)
         return {
             "ticks": count,
+            "in_lanes": len(self._activity),
             "time_s": self.recording.tick(count - 1).time_s if count else 0.0,
             "ended": self.ended,
             "report": None if result is None else result.report.model_dump(mode="json"),

@@ -1,6 +1,7 @@
 """The server of the page answers out of one recording, and lets nobody else in."""
 
 import json
+import time
 
 import numpy as np
 import pytest
@@ -30,7 +31,14 @@ def path(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def session(path):
-    return Session(path)
+    return caught_up(Session(path))
+
+
+def caught_up(session):
+    """Wait until the lanes show all that had been recorded."""
+    while not session.complete:
+        time.sleep(0.01)
+    return session
 
 
 @pytest.fixture
@@ -170,7 +178,7 @@ def test_the_page_hears_of_a_run_that_grows(path, tmp_path):
         with growing.open("ab") as file:
             file.write(whole[len(whole) // 2 :])
         last = first
-        while not last["ended"]:
+        while not (last["ended"] and last["in_lanes"] == last["ticks"]):
             last = json.loads(live.receive_text())
     assert last["ticks"] > before
     assert len(client.get("/api/lanes?from=0&to=9999&columns=4000").content) == (

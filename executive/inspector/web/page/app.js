@@ -73,7 +73,8 @@ function onProgress(progress) {
   if (wasLast && last > store.to) Object.assign(values, { to: last });
   if (store.following) values.tick = last;
   const now = performance.now();
-  if (Object.keys(values).length && (now - lastLanes > 250 || progress.ended)) {
+  const caughtUp = progress.in_lanes === progress.ticks;
+  if (now - lastLanes > 250 || (progress.ended && caughtUp)) {
     lastLanes = now;
     change(values);
     if (!("to" in values)) refreshLanes();
