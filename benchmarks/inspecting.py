@@ -106,6 +106,8 @@ def _scrubbing(path: Path, seed: int, times: int) -> list[Row]:
     session = Session(path)
     numbers = np.random.default_rng(seed).integers(0, len(session.recording), times)
     ticks_ms, lanes_ms = [], []
+    while not session.complete:  # a second or two after the page was opened
+        time.sleep(0.05)
     with _served(session) as address:
         for number in numbers.tolist():
             ticks_ms.append(_fetched_ms(f"{address}api/tick/{number}"))

@@ -27,7 +27,7 @@ from executive.inspector.why import why, why_ended
 from executive.inspector.why_not import why_halted, why_not
 
 # Ticks that are taken into the lanes at a time, so that nobody waits long for an answer.
-_STRIDE = 500
+_STRIDE = 100
 
 
 class Session:
