@@ -54,12 +54,13 @@ class SkillBehaviour(Leaf):
         budgets_s = (budget_s, skill.BUDGET_S, supervision.budget_s, float("inf"))
         self._budget_s = next(one for one in budgets_s if one is not None)
         self._stopwatch_s = stopwatch_s
-        self._begins = False
+        self._is_open = self._begins = False
         self._kept: Outcome | Exception | None = None
 
     def initialise(self) -> None:
         """Begin a new activation, which starts in the update that follows."""
-        self.outcome, self._kept, self._begins = None, None, True
+        self.outcome, self._kept = None, None
+        self._is_open = self._begins = True
 
     def answer(self) -> Outcome:
         """Do one tick's share of the work; outputs are written when it succeeds.
@@ -73,9 +74,9 @@ class SkillBehaviour(Leaf):
         return outcome
 
     @property
-    def wired_outputs(self) -> tuple[str, ...]:
-        """Output ports that are wired to a key, in the order in which they are written."""
-        return tuple(self._outputs)
+    def wired_outputs(self) -> Mapping[str, str]:
+        """Key of the blackboard by output port, in the order in which they are written."""
+        return {port: self._scope.key(name) for port, name in self._outputs.items()}
 
     def write(self, outputs: Mapping[str, object]) -> None:
         """Write values of output ports to the keys that these are wired to."""
@@ -85,11 +86,15 @@ class SkillBehaviour(Leaf):
 
     def terminate(self, _: Status) -> None:
         """Halt the skill if it still runs, and give back what it claimed."""
-        self._begins, self._kept = False, None
+        if not self._is_open:
+            return  # it has ended, and is told to forget
+        self._is_open = self._begins = False
+        self._kept = None
         try:
             self._skill.halt()
         finally:
-            self._supervision.claims.release(self._path)
+            if self._skill.CLAIMS:
+                self._supervision.claims.release(self._path)
 
     def pause(self) -> PausePolicy:
         """Do to the skill what a pause does to it; return what that was."""
@@ -128,7 +133,8 @@ class SkillBehaviour(Leaf):
 
     def _advance(self) -> Outcome:
         if self._begins:
-            if not self._supervision.claims.take(self._path, self._skill.CLAIMS):
+            wanted = self._skill.CLAIMS
+            if wanted and not self._supervision.claims.take(self._path, wanted):
                 return RUNNING
             self._begins = False
             self._skill.start(self._inputs.read())

@@ -7,7 +7,7 @@ from executive.engine.expression import Expression, parse_expression
 from executive.inspector.brief import brief
 from executive.inspector.past import PastRun, terms_of
 from executive.inspector.rebuilt import Rebuilt, WrittenNode
-from executive.inspector.retick.differences import TickDifference
+from executive.inspector.retick.differences import NOT_ASKED, NodeDifference, TickDifference
 from executive.inspector.retick.replay import Replay
 
 
@@ -23,25 +23,21 @@ class Causes:
         if not found.nodes:
             order = () if found.in_order else ("nodes answer in another order",)
             return (*order, *(self._write(each.writer) for each in found.writes[:1]))
-        decider = self._decider(found)
-        return tuple(dict.fromkeys(self._reasons(decider, found.tick)))
-
-    def _decider(self, found: TickDifference) -> str:
-        """Return the node that decides: the first to answer otherwise whose own doing it is."""
+        if forced := self._replay.stand_ins.forced_now:
+            paths = [self._replay.tree.nodes[node].path for node in sorted(forced)]
+            return tuple(f"{self._short(path)} was forced" for path in paths)
+        # The first to answer otherwise whose own doing it is.
         for node in found.nodes:
-            if any(self._reasons(node.path, found.tick)):
-                return node.path
-        return found.nodes[0].path
+            reasons = tuple(dict.fromkeys(self._reasons(node, found.tick)))
+            if reasons:
+                return reasons
+        return ()
 
-    def _reasons(self, path: str, tick: int) -> Iterator[str]:
-        old = self._run.index.indices.get(path)
-        new = None if old is None else self._replay.current.get(old)
-        if new is not None and new in self._replay.stand_ins.forced_now:
-            yield f"{self._short(path)} was forced"
-            return
-        yield from self._changed(path)
-        if old is not None:
-            yield from self._conditions(path, old, tick)
+    def _reasons(self, node: NodeDifference, tick: int) -> Iterator[str]:
+        yield from self._changed(node.path)
+        index = self._run.index.indices[node.path]
+        if not node.now.startswith(NOT_ASKED) and self._run.index.answers[tick, index]:
+            yield from self._conditions(node.path, index, tick)
 
     def _write(self, writer: str) -> str:
         changed = "; ".join(self._changed(writer))

@@ -12,6 +12,8 @@ from executive.inspector.retick.replay import WHAT_IF, Repeated, Replay
 
 _CODES = {status: code for code, status in enumerate(STATUSES)}
 
+NOT_ASKED = "not asked"
+
 
 @dataclass(frozen=True, slots=True)
 class NodeDifference:
@@ -168,7 +170,7 @@ def _decides_as(tick: Tick, recorded: Tick) -> bool:
 
 
 def _told(answer: int, status: int, halted: bool) -> str:
-    said = STATUSES[answer].value if answer else "not asked"
+    said = STATUSES[answer].value if answer else NOT_ASKED
     if halted:
         return f"{said}, then halted"
     return f"{said}, then reset" if answer and not status else said

@@ -100,6 +100,8 @@ class Replay:
             what_if=what_if,
             beyond=beyond,
         )
+        if self.script.meddled_nodes:
+            self.board.filter_with(self.script.rewritten)
         self._probe = TreeProbe(self.tree, self.stand_ins.intercept)
         self._pauses_over = 0
 
@@ -182,7 +184,7 @@ def _require_recorded(run: PastRun, tree: BuiltTree) -> None:
         )
 
 
-def _wired_outputs(tree: BuiltTree) -> Iterator[tuple[int, tuple[str, ...]]]:
+def _wired_outputs(tree: BuiltTree) -> Iterator[tuple[int, Mapping[str, str]]]:
     for node in tree.nodes:
         if isinstance(node.behaviour, SkillBehaviour):
             yield node.index, node.behaviour.wired_outputs

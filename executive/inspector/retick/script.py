@@ -11,6 +11,7 @@ from executive.core.errors import RecordingError
 from executive.core.outcome import Outcome
 from executive.core.outcome import Status as Answer
 from executive.engine.blackboard import Write
+from executive.engine.faults.injector import BY as INJECTED_BY
 from executive.engine.recording.messages import (
     INTERVENTIONS_TOPIC,
     PAUSES_TOPIC,
@@ -20,12 +21,15 @@ from executive.engine.recording.messages import (
 from executive.engine.recording.reader import Recording
 from executive.engine.ticks import Tick
 from executive.inspector.index import FAILURE, RUNNING, SUCCESS, RunIndex
+from executive.inspector.retick.values import RecordedValue
 
 ANSWERS: Mapping[int, Answer] = {
     RUNNING: Answer.RUNNING,
     SUCCESS: Answer.SUCCESS,
     FAILURE: Answer.FAILURE,
 }
+
+_NOBODY = InterventionMessage(tick=-1, node=-1, what="", by="")
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,16 +59,16 @@ class RecordedScript:
         self.index = index
         recording = index.recording
         self.pauses = tuple(_pauses(recording))
-        self._forced = _forced(recording)
+        self._meddled = _meddled(recording)
         self.length = len(recording) - (1 if self._closes(recording) else 0)
         self.tick = recording.tick(0)
         self._row: list[int] = []
         self._writes: dict[str, list[Write]] = {}
 
     @cached_property
-    def forced_nodes(self) -> frozenset[int]:
-        """Nodes in whose place somebody else has answered at some time."""
-        return frozenset(node for _, node in self._forced)
+    def meddled_nodes(self) -> frozenset[int]:
+        """Nodes in whose place something else has answered, raised or written at some time."""
+        return frozenset(node for _, node in self._meddled)
 
     @cached_property
     def raising(self) -> frozenset[str]:
@@ -95,16 +99,36 @@ class RecordedScript:
 
     def writes(self, path: str) -> list[Write]:
         """Return what a node wrote, in order."""
-        return self._writes.get(path, [])
+        return [*self._writes.get(path, ())]
 
     def raised(self, path: str) -> str:
         """Return what a node raised, in words; empty where it did not."""
         faults = self.tick.faults
         return next((fault.message for fault in faults if fault.path == path), "")
 
+    def meddled(self, node: int) -> bool:
+        """Return whether something else had a hand in what a node did in the tick."""
+        return (self.tick.number, node) in self._meddled
+
     def forced(self, node: int) -> Answer | None:
         """Return what was answered in the place of a node."""
-        return self._forced.get((self.tick.number, node))
+        return self._meddled.get((self.tick.number, node), _NOBODY).answer
+
+    def delayed(self, node: int) -> bool:
+        """Return whether a node was kept from starting up to the tick before."""
+        before = self._meddled.get((self.tick.number - 1, node), _NOBODY)
+        return before.by == INJECTED_BY and before.answer is Answer.RUNNING
+
+    def rewritten(self, write: Write) -> Write | None:
+        """Return a write as the run had it where something else had a hand in it."""
+        node = self.index.indices.get(write.writer)
+        if node is None or not self.meddled(node) or self.forced(node) is not None:
+            return write
+        left = self._writes.get(write.writer, [])
+        place = next((i for i, one in enumerate(left) if one.key == write.key), None)
+        if place is None:
+            return None
+        return Write(write.key, RecordedValue(left.pop(place).value), write.writer)
 
     def pauses_before(self, time_s: float) -> tuple[Pause, ...]:
         """Return the pauses that were over at a time of the cell's clock [s]."""
@@ -135,16 +159,17 @@ def _pauses(recording: Recording) -> list[Pause]:
     return pauses
 
 
-def _forced(recording: Recording) -> dict[tuple[int, int], Answer]:
-    forced = {}
+def _meddled(recording: Recording) -> dict[tuple[int, int], InterventionMessage]:
+    """Return interventions by tick and node: what answered, or raised, in the place of a node."""
+    found = {}
     for data in recording.messages(INTERVENTIONS_TOPIC):
         try:
             message = InterventionMessage.model_validate_json(data)
         except ValidationError as cause:
             raise _unreadable(recording, "intervention", cause) from cause
-        if message.answer is not None:
-            forced[message.tick, message.node] = message.answer
-    return forced
+        if message.answer is not None or message.by == INJECTED_BY:
+            found[message.tick, message.node] = message
+    return found
 
 
 def _unreadable(recording: Recording, what: str, cause: Exception) -> RecordingError:

@@ -10,6 +10,7 @@ from py_trees.common import Status
 from executive.core.errors import CellwrightError
 from executive.core.outcome import RUNNING, Outcome, failure, success
 from executive.core.outcome import Status as Answer
+from executive.engine.blackboard import Write
 from executive.engine.builder import BuiltTree
 from executive.engine.direct import TickCall
 from executive.engine.interception import Junction
@@ -105,7 +106,7 @@ class StandIns:
         script: RecordedScript,
         tree: BuiltTree,
         recorded: Sequence[int | None],
-        ports: Mapping[int, tuple[str, ...]],
+        ports: Mapping[int, Mapping[str, str]],
         *,
         what_if: WhatIf,
         beyond: Beyond | None,
@@ -116,7 +117,7 @@ class StandIns:
             script: What the recording says.
             tree: The tree that is ticked.
             recorded: Index in the recording of each node, None where it has none.
-            ports: Wired outputs of the recorded skills, by their index in the recording.
+            ports: Keys of the recorded skills' outputs by port, by index in the recording.
             what_if: What is otherwise.
             beyond: What skills answer outside the recording; None to end there.
         """
@@ -134,7 +135,7 @@ class StandIns:
         tick = junction.tick
         if isinstance(junction.node, SkillBehaviour):
             tick = self._skill(junction, recorded)
-        if recorded in self._script.forced_nodes:
+        if recorded is not None and recorded in self._script.meddled_nodes:
             tick = self._forced_then(junction, recorded, tick)
         if junction.index in self._what_if.forced:
             tick = self._forced_now(junction, recorded, tick)
@@ -143,7 +144,7 @@ class StandIns:
     def _skill(self, junction: Junction, recorded: int | None) -> TickCall:
         node, script, index = junction.node, self._script, junction.index
         note, running = junction.log.events.append, (index, NodeStatus.RUNNING)
-        ports = () if recorded is None else self._ports[recorded]
+        ports = {} if recorded is None else self._ports[recorded]
         path = "" if recorded is None else script.index.nodes[recorded].path
 
         def tick() -> Status:
@@ -160,9 +161,7 @@ class StandIns:
                 note(running)
                 return Status.RUNNING
             if answer == SUCCEEDED:
-                writes = script.writes(path)
-                values = (RecordedValue(write.value) for write in writes)
-                node.write(dict(zip(ports, values, strict=False)))
+                node.write(_outputs(ports, script.writes(path)))
             node.status = Status[outcome.status.name]
             note((index, NodeStatus[outcome.status.name]))
             status: Status = node.status
@@ -186,14 +185,22 @@ class StandIns:
             raise OutsideError(f"{name}: asked in tick {tick}, outside the recording")
         return _BEYOND[self._beyond]
 
-    def _forced_then(self, junction: Junction, recorded: int | None, tick: TickCall) -> TickCall:
-        """Answer for a node where somebody did so in the run."""
+    def _forced_then(self, junction: Junction, recorded: int, tick: TickCall) -> TickCall:
+        """Answer for a node, or raise in its place, where somebody did so in the run."""
+        script, node = self._script, junction.node
+        path = script.index.nodes[recorded].path
 
         def repeated() -> Status:
-            answer = None if recorded is None else self._script.forced(recorded)
-            if answer is None or recorded is None:
+            if not script.meddled(recorded):
+                if script.delayed(recorded) and node.status is Status.RUNNING:
+                    node.status = Status.INVALID  # it has yet to be started
                 return tick()
-            return junction.answer(self._script.outcome(recorded))
+            if script.forced(recorded) is None and not script.raised(path):
+                return tick()
+            if script.answered(recorded) is None:
+                junction.log.note_raised(node, terminating=False)
+                raise RepeatedError(script.raised(path))
+            return junction.answer(script.outcome(recorded))
 
         return repeated
 
@@ -233,3 +240,14 @@ class StandIns:
 
         if path in script.raising:
             node.terminate = terminate_again  # type: ignore[method-assign]  # of this node alone
+
+
+def _outputs(ports: Mapping[str, str], writes: Sequence[Write]) -> dict[str, RecordedValue]:
+    """Return what a skill gave, by port; a write may have been kept from the blackboard."""
+    left = list(writes)
+    outputs = {}
+    for port, key in ports.items():
+        place = next((place for place, write in enumerate(left) if write.key == key), None)
+        if place is not None:
+            outputs[port] = RecordedValue(left.pop(place).value)
+    return outputs
