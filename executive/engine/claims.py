@@ -35,7 +35,7 @@ class Claims:
         Raises:
             ClaimError: Another leaf has one of them, and is not about to be halted.
         """
-        wanted = sorted(resources) if resources else ()
+        wanted = sorted(resources)
         for resource in wanted:
             holder = self._holders.get(resource, path)
             if holder != path:
@@ -47,9 +47,8 @@ class Claims:
     def release(self, path: str) -> None:
         """Take back whatever a leaf holds."""
         self._waits.pop(path, None)
-        if self._holders:
-            for resource in [name for name, holder in self._holders.items() if holder == path]:
-                del self._holders[resource]
+        for resource in [name for name, holder in self._holders.items() if holder == path]:
+            del self._holders[resource]
 
     def _wait(self, path: str, resource: str, holder: str) -> bool:
         if self._waits.get(path) != holder and _fork(path, holder) not in self._parallels:

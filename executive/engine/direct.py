@@ -276,7 +276,7 @@ def tick_of_sequence(spot: Spot) -> TickCall:
                 status = ticks[i]()
                 i += 1
                 if status is not SUCCESS:
-                    if not node.memory:
+                    if i < count and not node.memory:
                         _forget(children[i:])
                     return finish(status)
                 if i < count:

@@ -57,8 +57,9 @@ class TreeProbe:
         self._plain = False
         self._inner = tuple(bool(behaviour.children) for behaviour in self.behaviours)
         # Other inner nodes never decide anything themselves.
-        self._speaks = tuple(
-            not behaviour.children or hasattr(behaviour, "outcome") for behaviour in self.behaviours
+        self._speaking = tuple(
+            None if behaviour.children and not hasattr(behaviour, "outcome") else behaviour
+            for behaviour in self.behaviours
         )
         self._told: dict[int, tuple[int, NodeStatus, Reason | None]] = {}
         self._earlier: tuple[Event, ...] = ()
@@ -74,9 +75,9 @@ class TreeProbe:
         """Return what was answered in the tick that is under way, and how nodes ended in it."""
         events = (*self._earlier, *self._direct.log.events)
         ends = (
-            NodeOutcome(node, status, self._reason(node))
+            NodeOutcome(node, status, _reason(self.behaviours[node]))
             for node, status in events
-            if self._speaks[node] and status not in (RUNNING, INVALID)
+            if self._speaking[node] is not None and status not in (RUNNING, INVALID)
         )
         return events, tuple(ends)
 
@@ -184,11 +185,12 @@ class TreeProbe:
         Conditions of a reactive branch answer the same in every tick; only their first
         answer is worth a record, the visits tell the rest.
         """
-        told, before = self._told, number - 1
+        told, before, speaking = self._told, number - 1, self._speaking
         for node, status in self._events:
-            if status is RUNNING or status is INVALID or not self._speaks[node]:
+            behaviour = speaking[node]
+            if status is RUNNING or status is INVALID or behaviour is None:
                 continue
-            reason = self._reason(node)
+            reason = _reason(behaviour)
             if reason is not None:
                 self.reasons[node] = reason
             elif self.reasons.pop(node, None) is None and self._inner[node]:
@@ -202,10 +204,6 @@ class TreeProbe:
                 or not _alike(last[2], reason)
             ):
                 yield NodeOutcome(node, status, reason)
-
-    def _reason(self, node: int) -> Reason | None:
-        outcome = getattr(self.behaviours[node], "outcome", None)
-        return outcome.reason if isinstance(outcome, Outcome) else None
 
     def error_of(self, behaviour: Behaviour, number: int, cause: BaseException) -> NodeError:
         """Return what a node raised, with the path and type of the node and the tick."""
@@ -226,6 +224,11 @@ class TreeProbe:
         else:
             self.raised = behaviour
         return behaviour
+
+
+def _reason(behaviour: Behaviour) -> Reason | None:
+    outcome = getattr(behaviour, "outcome", None)
+    return outcome.reason if isinstance(outcome, Outcome) else None
 
 
 def _alike(one: Reason | None, other: Reason | None) -> bool:
