@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
 
-from benchmarks.following import followed_share
+from perception.cable.following import followed_share
 from perception.cable.interfaces import Tracer
 from perception.cable.separation import separate
 from perception.cable.types import Endpoint

@@ -13,9 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.dropped_cables import draw_tier
-from benchmarks.following import followed_share
 from benchmarks.harness import Row, mean, median, share
 from benchmarks.photographs import annotated_traces, followed, labelled_images, told_apart
+from perception.cable.following import followed_share
 from perception.cable.interfaces import Tracer
 from perception.cable.tracers.analytic import AnalyticTracer
 from perception.cable.tracers.learned import LearnedTracer

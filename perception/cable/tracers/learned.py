@@ -64,10 +64,16 @@ class LearnedTracer:
         self, image: GreyImage, start_px: Points, endpoints: Sequence[Endpoint]
     ) -> Trace | None:
         """Follow the cable that starts at `start_px`; see `Tracer.trace`."""
+        return next(iter(self.hypotheses(image, start_px, endpoints)), None)
+
+    def hypotheses(
+        self, image: GreyImage, start_px: Points, endpoints: Sequence[Endpoint]
+    ) -> tuple[Trace, ...]:
+        """Return the traces that are believed in, likeliest first; their beliefs add up to <= 1."""
         start_px = np.atleast_2d(np.asarray(start_px, dtype=float))
         width_px = cable_width(image, start_px)
         if width_px is None:
-            return None
+            return ()
         scaled = scale_image(image, width_px, WIDTH, self._model.zoom)
         far = [
             end
@@ -79,12 +85,17 @@ class LearnedTracer:
             np.array([end.direction for end in far]).reshape(-1, 2),
         )
         starts = self._starts(scaled.into(start_px), endpoints, scaled)
-        best = self._search(scaled, starts, ends)[0]
-        return Trace(
-            points_px=np.vstack([start_px[:1], scaled.back(best.points)]),
-            end=best.end or TraceEnd.LOST,
-            # Ways that met more than once are counted more than once.
-            probability=float(np.exp(min(best.log_probability, 0.0))),
+        found = self._search(scaled, starts, ends)
+        # Ways that met more than once are counted more than once.
+        beliefs = np.exp(np.minimum([path.log_probability for path in found], 0.0))
+        beliefs /= max(float(beliefs.sum()), 1.0)
+        return tuple(
+            Trace(
+                points_px=np.vstack([start_px[:1], scaled.back(path.points)]),
+                end=path.end or TraceEnd.LOST,
+                probability=float(belief),
+            )
+            for path, belief in zip(found, beliefs, strict=True)
         )
 
     def _starts(

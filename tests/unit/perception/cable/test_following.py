@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from benchmarks.following import followed_share
+from perception.cable.following import followed_share
 
 LINE = np.column_stack([np.arange(0.0, 201.0, 4.0), np.zeros(51)])
 
