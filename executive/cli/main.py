@@ -39,6 +39,7 @@ _COMMANDS: Mapping[str, str] = MappingProxyType(
         "retick": "executive.cli.cmd_retick",
         "whatif": "executive.cli.cmd_whatif",
         "cover": "executive.cli.cmd_cover",
+        "campaign": "executive.cli.cmd_campaign",
         "groot": "executive.cli.cmd_groot",
         "skills": "executive.cli.cmd_skills",
         "tree": "executive.cli.cmd_tree",
