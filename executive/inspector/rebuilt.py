@@ -107,12 +107,14 @@ class Rebuilt:
     Attributes:
         nodes: The nodes; empty where the header holds no sources, or none that can be read.
         stations: Name of the subtree that stands at a path, the innermost where there are two.
+        owners: What the keys of each use of a tree begin with, and the path where it stands.
     """
 
     def __init__(self, header: MissionHeader, blackboard: Blackboard) -> None:
         """Read the sources; names get their values from the blackboard."""
         self.nodes: dict[str, WrittenNode] = {}
         self.stations: dict[str, str] = {}
+        self.owners: dict[str, str] = {header.mission: header.mission}
         self._blackboard = blackboard
         self._documents = _documents(header)
         root = self._documents.get(header.mission)
@@ -142,7 +144,7 @@ class Rebuilt:
             return
         document, root = found
         self.stations[place.path] = model.subtree
-        scope, wired = Scope(place.path, self._blackboard), {}
+        scope, wired = Scope(self._owner(place.path, model.subtree), self._blackboard), {}
         for name, port in document.in_.items():
             default = port.default if port.has_default else REQUIRED
             value = parse_value(model.in_[name]) if name in model.in_ else Literal(port.default)
@@ -152,6 +154,12 @@ class Rebuilt:
             scope.bind_output(name, reference.removeprefix("$"), place.names.scope)
             wired[name] = parse_value(reference), place.names
         self._add(root, _Place(place.path, PastScope(scope, wired)), depth + 1)
+
+    def _owner(self, path: str, tree: str) -> str:
+        """Return what the keys of a tree begin with, as it is worked out when a tree is built."""
+        owner = path if path not in self.owners else f"{path}.{tree}"
+        self.owners[owner] = path
+        return owner
 
 
 def _documents(

@@ -4,7 +4,7 @@ There each subtree has a blackboard of its own, named by the path of the subtree
 tree one with the tree's name. An object of a class carries its class as `__type`.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping, Sequence
 from math import prod
 from typing import Final
 
@@ -12,7 +12,6 @@ import umsgpack
 
 from executive.engine.recording.reader import KeyState
 from executive.inspector.brief import brief
-from executive.inspector.groot.live_tree import Station
 
 _MOST_ITEMS: Final = 64
 """Longer lists are sent as one line of text: clients ask for every key several times a second."""
@@ -22,20 +21,21 @@ _UNSET: Final = "executive.engine.blackboard.Unset"
 
 
 def blackboards(
-    board: Mapping[str, KeyState], stations: Iterable[Station], names: Iterable[str]
+    board: Mapping[str, KeyState], owners: Mapping[str, str], names: Sequence[str]
 ) -> dict[str, dict[str, object]]:
     """Return the values of some blackboards by name and key.
 
     Args:
         board: What the blackboard holds, by full key.
-        stations: Every use of a tree.
+        owners: Name of the blackboard that a key is on, by what the key begins with.
         names: Names of blackboards; without any, all of them. What is no name is left out.
     """
-    paths = {station.path: station.path for station in stations}
-    chosen = [name for name in names if name in paths] if names else [*paths]
+    known = dict.fromkeys(owners.values())
+    chosen = [name for name in names if name in known] if names else [*known]
     found: dict[str, dict[str, object]] = {name: {} for name in chosen}
     for key, state in board.items():
-        path, _, name = key.rpartition(":")
+        owner, _, name = key.rpartition(":")
+        path = owners.get(owner)
         if path in found and not _is_unset(state.value):
             found[path][name] = _plain(state.value)
     return found

@@ -36,7 +36,7 @@ class Station:
 
     Attributes:
         tree: Name of the tree.
-        path: Path of its root, which is also where its keys are.
+        path: Path of its root.
         root: Index of its root.
         uid: Number of the node that stands for the use; 0 for the main tree, which has none.
     """
@@ -55,6 +55,7 @@ class LiveTree:
     Attributes:
         nodes: The nodes.
         stations: The main tree first, then every use of a subtree in the order of the nodes.
+        boards: Path of the station that each key belongs to, by what the key begins with.
         xml: The tree.
         tree_id: Sixteen bytes that another run does not share.
     """
@@ -69,6 +70,7 @@ class LiveTree:
         written = Rebuilt(header, Blackboard())
         self._ports = {path: ports_of(node) for path, node in written.nodes.items()}
         self.stations = _stations(header, written.stations)
+        self.boards: Mapping[str, str] = written.owners
         count = len(self.nodes) + len(self.stations) - 1
         if count > MOST_NODES:
             raise InputError(f"{count} nodes: Groot2's protocol numbers {MOST_NODES} at most")

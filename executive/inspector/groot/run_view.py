@@ -86,7 +86,7 @@ class RunView:
     def blackboards(self, names: Iterable[str]) -> bytes:
         """Return the values of blackboards as MessagePack; without names, of all."""
         board = {} if self._at < 0 else self.recording.blackboard(self._at)
-        return packed(blackboards(board, self.tree.stations, [*names]))
+        return packed(blackboards(board, self.tree.boards, [*names]))
 
     def record_transitions(self, wanted: bool) -> None:
         """Begin to keep transitions, or stop."""
