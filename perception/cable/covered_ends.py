@@ -1,10 +1,8 @@
 """Ends whose connector is crossed: a trace stops where a connector begins, the cable does not."""
 
 import numpy as np
-from scipy.spatial import cKDTree
 
-from perception.cable.tracers.centre_line import arc_lengths, resample
-from perception.cable.types import Points
+from perception.cable.types import Endpoint, Points, Trace
 
 # From where the cable's own width ends to the tip of a connector.
 CONNECTOR_PX = 40.0
@@ -14,26 +12,58 @@ ACROSS_PX = 7.0
 LEAD_PX = 15.0
 
 
+def connector_px(end: Endpoint) -> Points:
+    """Return points along the axis of a connector, from the cable to its tip, shape (N, 2)."""
+    return _axis(end.position_px, -end.direction)
+
+
+def crossed_ends(trace: Trace, endpoints: tuple[Endpoint, ...]) -> tuple[bool, ...]:
+    """Say of each end whether a strand of a trace lies across its connector."""
+    line = trace.points_px
+    arcs = _arcs(line)
+    # Whichever end of the trace is nearer leads to the connector, and does not cross it.
+    starts = [bool(np.argmin(_gaps(line[[0, -1]], end.position_px)) == 0) for end in endpoints]
+    return tuple(
+        _is_crossed(line, arcs if first else arcs[-1] - arcs, connector_px(end))
+        for end, first in zip(endpoints, starts, strict=True)
+    )
+
+
 def ends_are_clear(path_px: Points) -> bool:
-    """Return whether no strand of a path crosses a connector at one of its ends.
+    """Return whether no strand of a path lies across a connector at one of its ends.
 
     Such a crossing is one of the cable's, and does not show in the trace.
 
     Args:
         path_px: Centre line from end to end, shape (N, 2).
     """
-    line = resample(path_px)
-    arcs = arc_lengths(line)
+    arcs = _arcs(path_px)
     if arcs[-1] <= 2.0 * (CONNECTOR_PX + LEAD_PX):
         return True
-    return _end_is_clear(line, arcs) and _end_is_clear(line[::-1], arcs[-1] - arcs[::-1])
+    return _leads_clear(path_px, arcs) and _leads_clear(path_px[::-1], arcs[-1] - arcs[::-1])
 
 
-def _end_is_clear(line: Points, arcs: Points) -> bool:
+def _leads_clear(line: Points, arcs: Points) -> bool:
     """Look at the end that a line begins with; `arcs` is how far each point is from there."""
     lead = line[int(np.searchsorted(arcs, LEAD_PX))]
     outwards = (line[0] - lead) / np.linalg.norm(line[0] - lead)
-    steps = np.arange(0.0, CONNECTOR_PX, 2.0)[:, None]
+    return not _is_crossed(line, arcs, _axis(line[0], outwards))
+
+
+def _is_crossed(line: Points, arcs: Points, axis: Points) -> bool:
     others = line[arcs > CONNECTOR_PX + LEAD_PX]
-    gaps, _ = cKDTree(others).query(line[0] + steps * outwards)
-    return bool(gaps.min() > ACROSS_PX)
+    return any(float(_gaps(others, point).min(initial=np.inf)) <= ACROSS_PX for point in axis)
+
+
+def _axis(start_px: Points, outwards: Points) -> Points:
+    axis: Points = start_px + np.arange(0.0, CONNECTOR_PX, 2.0)[:, None] * outwards
+    return axis
+
+
+def _arcs(line: Points) -> Points:
+    return np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(line, axis=0), axis=1))]
+
+
+def _gaps(points: Points, point: Points) -> Points:
+    gaps: Points = np.linalg.norm(points - point, axis=1)
+    return gaps

@@ -36,7 +36,7 @@ class PerturbDoubt(ShiftSkill):
         arc, doubt_px = _doubt(trace, crossings)
         sites = sites_between(trace, max(0.0, arc - REACH_ARC), min(1.0, arc + REACH_ARC))
         order = sorted(sites, key=lambda site: (-round(site.room_px / 10.0), abs(site.arc - arc)))
-        holds = [Hold(site.point_px, site.direction, doubt_px) for site in order]
+        holds = [Hold(site.point_px, site.direction, doubt_px[None]) for site in order]
         return (yield from self.shift(frame, holds))
 
 

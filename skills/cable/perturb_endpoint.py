@@ -3,7 +3,8 @@
 from typing import Annotated
 
 from executive.core.skill import In, SkillRun
-from perception.cable.types import Endpoint
+from perception.cable.covered_ends import connector_px, crossed_ends
+from perception.cable.types import Endpoint, Trace
 from perception.camera import CameraFrame
 from skills.cable.shifting import Hold, ShiftSkill
 
@@ -13,6 +14,9 @@ HOLD_BEHIND_PX = (25.0, 40.0, 60.0)
 
 class PerturbEndpoint(ShiftSkill):
     """Grasp the cable behind its surest reachable end and shift the end into free space.
+
+    An end whose connector lies under or over a strand comes first: that crossing does not show
+    in a trace.
 
     SUCCESS: the cable was held, moved and laid down.
     FAILURE: `grasp.unreachable` when no arm reaches any end; `grasp.missed` when the
@@ -24,11 +28,14 @@ class PerturbEndpoint(ShiftSkill):
         self,
         frame: Annotated[CameraFrame, In("overhead frame")],
         endpoints: Annotated[tuple[Endpoint, ...], In("ends of the cable, surest first")],
+        trace: Annotated[Trace | None, In("path of the cable, where it is known")] = None,
     ) -> SkillRun:
         """Hold behind an end and shift it."""
+        crossed = (False,) * len(endpoints) if trace is None else crossed_ends(trace, endpoints)
+        order = sorted(range(len(endpoints)), key=lambda number: not crossed[number])
         holds = [
-            Hold(end.position_px + behind * end.direction, end.direction, end.position_px)
-            for end in endpoints
+            Hold(end.position_px + behind * end.direction, end.direction, connector_px(end))
+            for end in (endpoints[number] for number in order)
             for behind in HOLD_BEHIND_PX
         ]
         return (yield from self.shift(frame, holds))

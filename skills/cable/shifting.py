@@ -23,8 +23,10 @@ DRAWS = 16
 LIFT_M = 0.03
 # How many of them are tried when the arm cannot make the first.
 MOST_STEPS = 6
-# Cable nearer than this to the held point moves along with it.
+# Cable nearer than this to the held point moves along with it; on the side that leads, only
+# what is no wider than a connector does, and the rest is a strand across it.
 OWN_PX = 60.0
+OWN_HALF_WIDTH_PX = 12.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -34,7 +36,7 @@ class Hold:
     Attributes:
         point_px: On the centre line, shape (2,).
         direction: Unit tangent, shape (2,).
-        leading_px: What should come to lie free, e.g. the connector, shape (2,).
+        leading_px: What should come to lie free, e.g. along the connector, shape (N, 2).
     """
 
     point_px: Points
@@ -89,8 +91,8 @@ Room = Callable[[Points], float]
 def room_map(cable: NDArray[np.bool_], hold: Hold) -> Room:
     """Return the distance [px] of an image point to cable that does not move along."""
     rows, columns = np.nonzero(cable[::2, ::2])
-    pixels = 2.0 * np.column_stack([columns, rows])
-    resting = pixels[np.linalg.norm(pixels - hold.point_px, axis=1) > OWN_PX]
+    pixels: Points = 2.0 * np.column_stack([columns, rows]).astype(np.float64)
+    resting = pixels[~_moves_along(pixels, hold)]
 
     def room_px(point_px: Points) -> float:
         return float(np.linalg.norm(resting - point_px, axis=1).min(initial=1e3))
@@ -98,15 +100,29 @@ def room_map(cable: NDArray[np.bool_], hold: Hold) -> Room:
     return room_px
 
 
+def _moves_along(pixels: Points, hold: Hold) -> NDArray[np.bool_]:
+    offsets = pixels - hold.point_px
+    near: NDArray[np.bool_] = np.linalg.norm(offsets, axis=1) <= OWN_PX
+    ahead = hold.leading_px[-1] - hold.point_px
+    if not ahead.any():
+        return near
+    ahead = ahead / np.linalg.norm(ahead)
+    beside = np.abs(offsets @ np.array([-ahead[1], ahead[0]])) > OWN_HALF_WIDTH_PX
+    across: NDArray[np.bool_] = (offsets @ ahead > 0.0) & beside
+    return near & ~across
+
+
 def roomiest_steps(
     frame: CameraFrame, leading_px: Points, room_px: Room, rng: np.random.Generator
 ) -> list[Floats]:
-    """Return random level displacements [m], those first that leave `leading_px` most room."""
+    """Return random level displacements [m], those first that leave all of `leading_px` room."""
     steps_m = np.zeros((DRAWS, 3))
     steps_m[:, :2] = rng.uniform(-HALF_SQUARE_M, HALF_SQUARE_M, (DRAWS, 2))
-    here_m = frame.camera.on_plane(leading_px)[0]
-    places_px = frame.camera.project(here_m + steps_m)
-    order = np.argsort([-room_px(place) for place in places_px], kind="stable")
+    here_m = frame.camera.on_plane(leading_px)
+    rooms_px = [
+        min(room_px(place) for place in frame.camera.project(here_m + step_m)) for step_m in steps_m
+    ]
+    order = np.argsort([-room for room in rooms_px], kind="stable")
     return [steps_m[number] for number in order[:MOST_STEPS]]
 
 

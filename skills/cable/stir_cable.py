@@ -29,5 +29,6 @@ class StirCable(ShiftSkill):
         holds = []
         for number in order:
             piece, middle = pieces[number], len(pieces[number]) // 2
-            holds.append(Hold(piece[middle], tangent_at(piece, middle, reach=4), piece[middle]))
+            tangent = tangent_at(piece, middle, reach=4)
+            holds.append(Hold(piece[middle], tangent, piece[middle][None]))
         return (yield from self.shift(frame, holds))

@@ -54,10 +54,10 @@ def test_a_blocked_shift_is_tried_another_way():
 def test_steps_with_more_room_come_first():
     cable = np.zeros((751, 1001), dtype=bool)
     cable[:, 600] = True
-    hold = Hold(np.array([500.0, 375.0]), np.array([1.0, 0.0]), np.array([580.0, 375.0]))
+    hold = Hold(np.array([500.0, 375.0]), np.array([1.0, 0.0]), np.array([[580.0, 375.0]]))
     room = room_map(cable, hold)
     steps = roomiest_steps(frame(), hold.leading_px, room, np.random.default_rng(0))
-    rooms = [room(hold.leading_px + 1e3 * step[:2] * [1, -1]) for step in steps]
+    rooms = [room(hold.leading_px[0] + 1e3 * step[:2] * [1, -1]) for step in steps]
     assert rooms == sorted(rooms, reverse=True)
 
 
@@ -73,3 +73,16 @@ def test_cable_is_pulled_from_the_end_of_its_trace_towards_the_middle():
 def test_pulling_never_goes_beyond_the_middle():
     assert np.allclose(towards_middle(np.array([0.1, 0.0, 0.01]), 0.5), [-0.1, 0.0, 0.0])
     assert np.allclose(towards_middle(np.zeros(3), 0.5), 0.0)
+
+
+def test_a_connector_is_moved_clear_of_the_strand_that_crosses_it():
+    """The end points to the right, and a strand runs from top to bottom across it."""
+    end = np.array([540.0, 375.0])
+    connector = end + np.arange(0.0, 40.0, 2.0)[:, None] * [1.0, 0.0]
+    hold = Hold(np.array([515.0, 375.0]), np.array([-1.0, 0.0]), connector)
+    cable = np.zeros((773, 1032), bool)
+    cable[370:380, 300:580] = True
+    cable[200:600, 558:564] = True
+    step_m = roomiest_steps(frame(), connector, room_map(cable, hold), np.random.default_rng(0))[0]
+    moved = frame().camera.project(frame().camera.on_plane(connector) + step_m)
+    assert np.abs(moved[:, 0] - 561.0).min() > 20.0
