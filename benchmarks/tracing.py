@@ -18,11 +18,13 @@ from benchmarks.photographs import annotated_traces, followed, labelled_images, 
 from perception.cable.following import followed_share
 from perception.cable.interfaces import Tracer
 from perception.cable.tracers.analytic import AnalyticTracer
+from perception.cable.tracers.both_ways import BothWaysTracer
 from perception.cable.tracers.learned import LearnedTracer
 from perception.cable.tracers.skeleton import SkeletonTracer, SkeletonTracerConfig
 from perception.cable.tracers.transitions import ThreadingConfig
 from perception.cable.types import Endpoint, Trace
 from perception.models.store import FOLDER
+from perception.training.calibration import expected_calibration_error, selective_error
 from perception.training.scenes import Scene
 
 Floats = NDArray[np.float64]
@@ -32,7 +34,7 @@ TIERS = ("B1", "B2", "B3")
 # Each crossing by itself, the way that bends least, as mBEST does it (Choi et al. 2023).
 EACH_BY_ITSELF = SkeletonTracerConfig(threading=ThreadingConfig(most=1, ring_cost=0.0))
 TRACERS: dict[str, Callable[[], Tracer]] = {
-    "": lambda: LearnedTracer(FOLDER / "tracer_v1"),
+    "": lambda: BothWaysTracer(LearnedTracer(FOLDER / "tracer_v2")),
     "_skeleton": SkeletonTracer,
     "_analytic": AnalyticTracer,
 }
@@ -57,15 +59,35 @@ class Task:
 def run(quick: bool, seed: int) -> Sequence[Row]:
     """Trace in 30 scenes a tier (6 when quick), and in all photographs (none when quick)."""
     wanted = 6 if quick else 30
-    rows = []
+    rows: list[Row] = []
+    believed: list[tuple[float, bool]] = []
     for tier in TIERS:
         tasks = [draw_task(tier, seed, number) for number in range(wanted)]
         for suffix, make in TRACERS.items():
             tracer = make()
-            right = sum(is_right(task, _traced(tracer, task)) for task in tasks)
+            traces = [_traced(tracer, task) for task in tasks]
+            right = [is_right(*pair) for pair in zip(tasks, traces, strict=True)]
             goal = ">= 0.967" if not suffix else ""
-            rows.append(share(tier + suffix, right, wanted, goal))
+            rows.append(share(tier + suffix, sum(right), wanted, goal))
+            if not suffix:
+                beliefs = [trace.probability if trace is not None else 0.0 for trace in traces]
+                believed += zip(beliefs, right, strict=True)
+    rows += _calibration(believed, np.random.default_rng(seed))
     return rows if quick else rows + _photographs()
+
+
+def _calibration(believed: Sequence[tuple[float, bool]], rng: np.random.Generator) -> list[Row]:
+    """Return how well beliefs in traces hold; intervals by resampling the traces."""
+    pairs = np.array(believed, dtype=float)
+    drawn = [pairs[rng.integers(len(pairs), size=len(pairs))] for _ in range(400)]
+    rows = []
+    for name, measure, goal in (
+        ("trace_calibration_error", expected_calibration_error, "<= 0.05"),
+        ("error_of_surest_80", selective_error, "<= 0.01"),
+    ):
+        low, high = np.percentile([measure(*sample.T) for sample in drawn], [2.5, 97.5])
+        rows.append(Row(name, measure(*pairs.T), "1", len(pairs), float(low), float(high), goal))
+    return rows
 
 
 def _photographs() -> list[Row]:
