@@ -77,6 +77,8 @@ class Comparison:
         self._new = np.array([new for new, _ in pairs], np.intp)
         self._old = np.array([old for _, old in pairs], np.intp)
         self._statuses = np.zeros(len(replay.recorded), np.int8)
+        # A tick that is taken up in its middle resets nodes that a whole one resets in the next.
+        self._resumed = index.recording.header.resumed_from is not None
         self._exact = replay.recorded == tuple(range(len(index.nodes)))
 
     def of(self, repeated: Repeated) -> TickDifference | None:
@@ -101,8 +103,10 @@ class Comparison:
             answers[node] = _CODES[status]
         was, now = self._index.answers[number, self._old], answers[self._new]
         status_was = self._index.statuses[number, self._old]
-        # What a node was left with in an earlier tick is no difference of this one.
-        differ = (was != now) | ((now != 0) & (status_was != self._statuses[self._new]))
+        differ = was != now
+        if not self._resumed:
+            # What a node was left with in an earlier tick is no difference of this one.
+            differ |= (now != 0) & (status_was != self._statuses[self._new])
         if repeated.outside:  # the tick broke off: only what was done counts
             differ = (was != now) & (now != 0)
         halted_now = self._halts(repeated.tick.halts, current=True)
