@@ -60,7 +60,7 @@ class GrowingRecording:
         try:
             found = [part.stat() for part in parts_of(self.path)]
         except OSError as cause:
-            raise RecordingError(f"{self.path}: is gone: {cause}") from cause
+            raise RecordingError(f"{self.path}: cannot be read: {cause.strerror}") from cause
         return tuple(one.st_ino for one in found), found[-1].st_size
 
     def _take_new(self) -> int:
