@@ -17,11 +17,7 @@ from executive.core.errors import InputError, RecordingError
 from executive.engine.recording.reader import Recording
 from executive.inspector.changes import Change, matching_nodes, status_changes
 from executive.inspector.documents import change_document, tick_document
-from executive.inspector.stepper import KEYS, Stepper
 from executive.inspector.views import ICONS, summary_view, tick_view
-
-# Arrows and the space bar, as terminals send them.
-_SAME_AS = {"\x1b[C": "n", "\x1b[D": "p", " ": "n"}
 
 
 def inspect(
@@ -35,7 +31,7 @@ def inspect(
     ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON on stdout.")] = False,
     plain: Annotated[
-        bool, typer.Option("--plain", help="Print and return: no stepping, no colours.")
+        bool, typer.Option("--plain", help="Print and return: not interactive, no colours.")
     ] = False,
     web: Annotated[
         bool,
@@ -53,10 +49,13 @@ def inspect(
 ) -> None:
     """Show what a run did: its outcome, and the tree at a tick with every status and reason.
 
-    On a terminal, keys step through the ticks.
+    On a terminal, an interactive inspector opens: `?` lists its keys.
     """
     if web:
         serve_page(recording, chatter(), host=host, port=port, open_browser=open_browser)
+        return
+    if not (plain or as_json or changes) and sys.stdin.isatty() and sys.stdout.isatty():
+        _look(recording, tick, node)
         return
     run = _opened(recording)
     nodes = matching_nodes(run.header.nodes, node)
@@ -67,10 +66,23 @@ def inspect(
     number = _tick_number(run, tick)
     if as_json:
         typer.echo(json.dumps(tick_document(run, number, nodes)))
-    elif plain or not (sys.stdin.isatty() and sys.stdout.isatty()):
-        console.print(summary_view(run), "", tick_view(run, number, nodes))
     else:
-        _step(console, run, number, nodes)
+        console.print(summary_view(run), "", tick_view(run, number, nodes))
+
+
+def _look(path: Path, tick: int | None, node: str | None) -> None:
+    """Look at a recording in the terminal, until the user leaves."""
+    from executive.inspector.terminal.app import InspectorApp
+
+    def start(run: Recording) -> tuple[int | None, int]:
+        return (
+            None if tick is None else _tick_number(run, tick),
+            min(matching_nodes(run.header.nodes, node)),
+        )
+
+    wrong = InspectorApp(path, start).run()
+    if wrong is not None:
+        raise InputError(wrong)
 
 
 def _opened(path: Path) -> Recording:
@@ -117,25 +129,3 @@ def _print_changes(console: Console, changes: Iterable[Change], as_json: bool) -
             ),
             soft_wrap=True,
         )
-
-
-def _step(console: Console, run: Recording, number: int, nodes: frozenset[int]) -> None:
-    stepper = Stepper(run, number, nodes)
-    key = ""
-    while key not in ("q", "\x03", "\x04"):
-        if key == "g":
-            stepper.go_to(_asked_number(console))
-        elif key:
-            stepper.press(_SAME_AS.get(key, key))
-        console.clear()
-        console.print(summary_view(run), "", tick_view(run, stepper.number, nodes))
-        console.print(Text(f"{KEYS}  {stepper.note}", "bright_black"))
-        try:
-            key = typer.getchar()
-        except (EOFError, KeyboardInterrupt):
-            return
-
-
-def _asked_number(console: Console) -> int | None:
-    text = console.input("tick: ").strip()
-    return int(text) if text.isdecimal() else None

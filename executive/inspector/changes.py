@@ -1,6 +1,6 @@
 """Where in a recording something changed."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
 
@@ -77,24 +77,3 @@ def _explanations(tick: Tick, nodes: Sequence[RecordedNode]) -> dict[int, str]:
         by = nodes[halt.by].path if halt.by >= 0 else "the runner"
         said[halt.node] = f"halted by {by}"
     return said
-
-
-def next_change(recording: Recording, number: int, nodes: frozenset[int]) -> int | None:
-    """Return the first tick after one in which one of the nodes changes."""
-    return _first_with_change(recording, range(number + 1, len(recording)), nodes)
-
-
-def previous_change(recording: Recording, number: int, nodes: frozenset[int]) -> int | None:
-    """Return the last tick before one in which one of the nodes changes."""
-    return _first_with_change(recording, range(number - 1, -1, -1), nodes)
-
-
-def _first_with_change(
-    recording: Recording, numbers: Iterable[int], nodes: frozenset[int]
-) -> int | None:
-    changed = (
-        number
-        for number in numbers
-        if any(node in nodes for node, _ in recording.tick(number).changes)
-    )
-    return next(changed, None)

@@ -1,14 +1,13 @@
-"""`cellwright inspect` on the command line, and stepping with keys."""
+"""`cellwright inspect` where there is no terminal: it prints and returns."""
 
 import json
 
 import pytest
-import typer
 from py_trees.common import Status
 from toy_runs import Leaf, busy_tree, record
 from typer.testing import CliRunner
 
-from executive.cli import cmd_inspect, main
+from executive.cli import main
 from executive.core.outcome import failure
 
 
@@ -72,18 +71,3 @@ def test_a_file_that_is_no_recording_is_bad_input(tmp_path, monkeypatch, capsys)
         main.main()
     assert end.value.code == 2
     assert "not a readable recording" in capsys.readouterr().err
-
-
-def test_keys_step_through_ticks_until_q(run_file, monkeypatch):
-    keys = iter(["n", "\x1b[C", "c", "g", "q"])
-    monkeypatch.setattr(typer, "getchar", lambda: next(keys))
-    monkeypatch.setattr(cmd_inspect, "_asked_number", lambda console: 42)
-    monkeypatch.setattr(cmd_inspect.sys, "stdin", type("T", (), {"isatty": lambda self: True})())
-    shown = []
-    monkeypatch.setattr(cmd_inspect, "tick_view", lambda run, number, nodes: shown.append(number))
-    console = cmd_inspect.results()
-    recording = cmd_inspect.Recording.open(run_file)
-    cmd_inspect._step(console, recording, 0, frozenset(range(5)))
-    assert shown[:3] == [0, 1, 2]
-    assert shown[3] > 2
-    assert shown[4] == 42

@@ -16,7 +16,6 @@ from executive.engine.ticks import NodeStatus
 from executive.inspector.brief import MAX_LENGTH, brief
 from executive.inspector.changes import matching_nodes, status_changes
 from executive.inspector.documents import tick_document
-from executive.inspector.stepper import Stepper
 from executive.inspector.views import summary_view, tick_view
 
 RUNNING, SUCCESS = Status.RUNNING, Status.SUCCESS
@@ -115,34 +114,6 @@ def test_the_json_of_a_tick_says_the_same(failed):
     assert [node["status"] for node in document["nodes"]] == ["FAILURE", "SUCCESS", "FAILURE"]
     assert document["nodes"][2]["reason"] == "grasp.missed: nothing held"
     assert document["blackboard"]["mission:goal"]["value"] == {"x": 0.25}
-
-
-def test_keys_step_through_ticks_changes_and_failures(failed):
-    stepper = Stepper(failed, 0, frozenset({2}))
-    stepper.press("n")
-    assert stepper.number == 1
-    stepper.press("p")
-    stepper.press("p")
-    assert (stepper.number, stepper.note) == (0, "nothing further that way")
-    stepper.press("c")
-    assert (stepper.number, stepper.note) == (1, "")
-    stepper.press("f")
-    assert stepper.number == 2
-    stepper.press("b")
-    assert stepper.number == 1
-    stepper.press("x")
-    assert "unknown key" in stepper.note
-
-
-def test_a_node_that_halts_and_starts_again_changes_in_both_ticks(tmp_path):
-    recording, live = record(tmp_path / "a.mcap", busy_tree())
-    hold = frozenset({3})
-    stepper, changed = Stepper(recording, 0, hold), []
-    while not stepper.note:
-        stepper.press("c")
-        changed.append(stepper.number)
-    expected = [tick.number for tick in live[1:] if any(n == 3 for n, _ in tick.changes)]
-    assert changed[:-1] == expected
 
 
 @pytest.mark.parametrize(
