@@ -13,7 +13,7 @@ import umsgpack
 from executive.engine.recording.reader import KeyState
 from executive.inspector.brief import brief
 
-_MOST_ITEMS: Final = 64
+MOST_ITEMS: Final = 64
 """Longer lists are sent as one line of text: clients ask for every key several times a second."""
 
 _INTEGERS: Final = range(-(2**63), 2**64)
@@ -55,7 +55,7 @@ def _plain(value: object) -> object:
     if isinstance(value, int) and value not in _INTEGERS:
         return str(value)
     if isinstance(value, list):
-        return [_plain(item) for item in value] if len(value) <= _MOST_ITEMS else brief(value)
+        return [_plain(item) for item in value] if len(value) <= MOST_ITEMS else brief(value)
     if isinstance(value, Mapping):
         return _object(value)
     return value
@@ -82,6 +82,6 @@ def _object(value: Mapping[str, object]) -> object:
 
 def _array(value: Mapping[str, object]) -> object:
     shape, values = value.get("shape"), value.get("values")
-    if not isinstance(shape, list) or values is None or prod(shape) > _MOST_ITEMS:
+    if not isinstance(shape, list) or values is None or prod(shape) > MOST_ITEMS:
         return brief(value)
     return _plain(values)
