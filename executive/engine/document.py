@@ -519,7 +519,7 @@ class MissionDocument(Model):
     timeout_s: Seconds | None = Field(None, description="Limit on the cell's clock [s].")
     tick_hz: Annotated[float, Field(strict=True, gt=0.0, le=1000.0)] = 10.0
     on_error: Literal["end", "fail"] = Field(
-        "end", description="What a leaf that raises does: end the mission, or fail."
+        "end", description="What a node that raises does: end the mission, or fail."
     )
     in_: dict[Name, InPort] = Field(default_factory=dict, alias="in")
     out: dict[Name, OutPort] = Field(default_factory=dict)

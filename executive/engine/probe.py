@@ -17,7 +17,8 @@ from executive.core.outcome import Outcome, Reason
 from executive.engine.builder import BuiltTree
 from executive.engine.checkpoints.past import Past
 from executive.engine.direct import Event
-from executive.engine.interception import Interceptor
+from executive.engine.interception import Interceptor, chained
+from executive.engine.raising import failing
 from executive.engine.ticking import NODE_STATUS, DirectTicks
 from executive.engine.ticks import (
     RUNNER,
@@ -48,7 +49,7 @@ class TreeProbe:
         """
         self._tree = tree
         self.behaviours: tuple[Behaviour, ...] = tuple(node.behaviour for node in tree.nodes)
-        self._direct = DirectTicks(tree.root, self.behaviours, intercept)
+        self._direct = self._calls(intercept)
         self._index = {id(behaviour): i for i, behaviour in enumerate(self.behaviours)}
         self._parents = tuple(node.parent for node in tree.nodes)
         self._statuses = [INVALID] * len(self.behaviours)
@@ -83,8 +84,15 @@ class TreeProbe:
 
     def intercept_with(self, intercept: Interceptor | None) -> None:
         """Put something else between nodes and their parents, from the next tick on."""
-        self._direct = DirectTicks(self._tree.root, self.behaviours, intercept)
+        self._direct = self._calls(intercept)
         self._plain = False
+
+    def _calls(self, intercept: Interceptor | None) -> DirectTicks:
+        around = () if intercept is None else (intercept,)
+        if self._tree.supervision.on_error == "fail":
+            paths = [node.path for node in self._tree.nodes]
+            around = (failing(paths, self._tree.supervision), *around)
+        return DirectTicks(self._tree.root, self.behaviours, chained(around))
 
     @property
     def answer(self) -> NodeStatus:

@@ -1,4 +1,4 @@
-"""What the leaves of one tree answer to, and where they report what went wrong."""
+"""What the nodes of one tree answer to, and where they report what went wrong."""
 
 from dataclasses import dataclass, field
 from typing import Literal
@@ -7,7 +7,7 @@ from executive.engine.claims import Claims
 
 OnError = Literal["end", "fail"]
 RAISED = "node.raised"
-"""Reason code of a leaf that raised where a mission goes on after that."""
+"""Reason code of a node that raised where a mission goes on after that."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,8 +20,8 @@ class LateStep:
 
 
 @dataclass(frozen=True, slots=True)
-class RaisedInLeaf:
-    """What the leaf at `path` raised without ending the mission."""
+class RaisedInNode:
+    """What the node at `path` raised without ending the mission."""
 
     path: str
     cause: Exception
@@ -29,10 +29,10 @@ class RaisedInLeaf:
 
 @dataclass(slots=True)
 class Supervision:
-    """Shared by the leaves of one tree.
+    """Shared by the nodes of one tree.
 
     Attributes:
-        on_error: Whether a leaf that raises ends the mission, or fails.
+        on_error: Whether a node that raises ends the mission, or fails.
         budget_s: How long a step may take where a leaf does not say so [s]; None for ever.
         claims: Who holds which arm.
     """
@@ -41,17 +41,17 @@ class Supervision:
     budget_s: float | None = None
     claims: Claims = field(default_factory=Claims)
     _late: list[LateStep] = field(default_factory=list)
-    _raised: list[RaisedInLeaf] = field(default_factory=list)
+    _raised: list[RaisedInNode] = field(default_factory=list)
 
     def note_late(self, path: str, seconds: float, budget_s: float) -> None:
         """Take note of a step that took too long."""
         self._late.append(LateStep(path, seconds, budget_s))
 
     def note_raised(self, path: str, cause: Exception) -> None:
-        """Take note of what a leaf raised that fails instead of ending the mission."""
-        self._raised.append(RaisedInLeaf(path, cause))
+        """Take note of what a node raised that fails instead of ending the mission."""
+        self._raised.append(RaisedInNode(path, cause))
 
-    def drain(self) -> tuple[tuple[LateStep, ...], tuple[RaisedInLeaf, ...]]:
+    def drain(self) -> tuple[tuple[LateStep, ...], tuple[RaisedInNode, ...]]:
         """Return what has been noted since the last call."""
         if not self._late and not self._raised:
             return (), ()

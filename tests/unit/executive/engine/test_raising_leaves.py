@@ -58,11 +58,50 @@ def test_conditions_and_inputs_that_cannot_be_read_fail_too(tmp_path, leaf):
     assert "missing" in str(rehearsal.seen.ticks[0].faults)
 
 
-def test_a_guard_that_raises_ends_the_mission_all_the_same(tmp_path):
-    root = """
+UNWRITTEN = """force_success:
+          child: {when: "false", on_success: {missing: "true", few: "2", some: "[1]"}}"""
+RAISING = {
+    "if": "{skill: swing, if: missing}",
+    "while": "{skill: swing, in: {steps: 9}, while: spare == 0 or missing}",
+    "on_start": "{skill: swing, on_start: {copy: missing}}",
+    "on_success": "{skill: swing, in: {steps: 1}, on_success: {copy: missing}}",
+    "on_failure": "{when: missing, on_failure: {copy: missing}}",
+    "retry": "{retry: {times: $few, child: {skill: swing}}}",
+    "for_each": "{for_each: {item: $one, in: $some, child: {skill: swing}}}",
+    "switch": '{switch: {on: missing, cases: {"true": {skill: swing}}}}',
+    "reactive_switch": """
+        {reactive_switch: {on: spare == 0 or missing, cases: {"true": {skill: swing}}}}""",
+}
+
+
+@pytest.mark.parametrize("node", RAISING.values(), ids=RAISING)
+def test_guards_and_decorators_that_raise_fail_too(tmp_path, node):
+    root = f"""
     sequence:
-      - force_success: {child: {when: "false", on_success: {missing: "true"}}}
-      - force_success: {child: {skill: swing, if: missing}}
+      - {UNWRITTEN}
+      - set: {{spare: 0}}
+      - parallel:
+          children:
+            - selector: [{node}, {{wait: 0}}]
+            - sequence: [{{wait: 0.3}}, {{set: {{spare: 1}}}}]
+    """
+    rehearsal = Rehearsal(tmp_path, root, "on_error: fail")
+    result = rehearsal.run()
+    assert result.outcome is MissionOutcome.SUCCESS, result.reason
+    assert "has no value" in str([tick.faults for tick in rehearsal.seen.ticks])
+    reasons = [end.reason for tick in rehearsal.seen.ticks for end in tick.outcomes if end.reason]
+    assert RAISED in [reason.code for reason in reasons]
+    assert rehearsal.journal.lines.count("hold stops") == (node.count("spare") > 0)
+    assert Rehearsal(tmp_path, root).run().outcome is MissionOutcome.ERROR
+
+
+def test_what_raises_while_it_is_halted_ends_the_mission_all_the_same(tmp_path):
+    root = f"""
+    sequence:
+      - {UNWRITTEN}
+      - parallel:
+          succeed: any
+          children: [{{skill: swing, in: {{steps: 9}}, on_halt: {{copy: missing}}}}, {{wait: 0.1}}]
     """
     result = Rehearsal(tmp_path, root, "on_error: fail").run()
     assert result.outcome is MissionOutcome.ERROR
