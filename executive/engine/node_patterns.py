@@ -20,15 +20,19 @@ class NamedNode(Protocol):
 def matching(nodes: Sequence[NamedNode], pattern: str) -> frozenset[int]:
     """Return the indices of the nodes that a pattern means.
 
+    A `*` of a path also stands for several names; that of a name alone does not.
+
     Raises:
         InputError: It means none.
     """
-    found = frozenset(
-        index
-        for index, node in enumerate(nodes)
-        if fnmatchcase(node.path, pattern) or fnmatchcase(node.path, f"*/{pattern}")
-    )
+    found = frozenset(index for index, node in enumerate(nodes) if _means(pattern, node.path))
     if not found:
         names = sorted({node.path.rpartition("/")[2] for node in nodes})
         raise InputError(f"no node {pattern!r}; {closest(pattern, names)}")
     return found
+
+
+def _means(pattern: str, path: str) -> bool:
+    if "/" not in pattern:
+        return fnmatchcase(path.rpartition("/")[2], pattern)
+    return fnmatchcase(path, pattern) or fnmatchcase(path, f"*/{pattern}")

@@ -1,8 +1,16 @@
 """What a recording says of the faults that were injected into its run."""
 
 from executive.engine.recording.messages import InjectedReport
+from executive.engine.recording.reader import Recording
 
 _PLACES = 3
+
+
+def injected_lines(recording: Recording) -> tuple[str, ...]:
+    """Return what came of each fault, or what was to be injected where a run was killed."""
+    if recording.result is None:
+        return recording.header.faults
+    return tuple(injected_line(report) for report in recording.result.injected)
 
 
 def injected_line(report: InjectedReport) -> str:

@@ -7,6 +7,7 @@ import numpy as np
 
 from executive.engine.ticks import NodeStatus
 from executive.inspector.answer_lines import answer_lines
+from executive.inspector.injected import injected_lines
 from executive.inspector.past import PastRun
 from executive.inspector.times import NodeTimes, Recovery, attempts, cycle_s, node_times, recovery
 from executive.inspector.why import why_ended
@@ -121,6 +122,7 @@ class MissionReport:
         wall_s: Duration on the machine's clock [s]; None where the recording does not say.
         ticks: Number of ticks.
         chain: Why it ended so, from the root down to the leaf that decided, as lines.
+        injected: What came of each fault that was injected, as lines.
         recovery: Time on second tries.
         retries: Attempts of each retry that ran.
         failures: Failures of leaves, skills before conditions, the most frequent first.
@@ -139,6 +141,7 @@ class MissionReport:
     wall_s: float | None
     ticks: int
     chain: tuple[str, ...]
+    injected: tuple[str, ...]
     recovery: Recovery
     retries: tuple[Retries, ...]
     failures: tuple[Failures, ...]
@@ -173,6 +176,7 @@ def mission_report(run: PastRun) -> MissionReport:
         wall_s=result.report.wall_s if result else None,
         ticks=index.last_tick + 1,
         chain=tuple(answer_lines(run, why_ended(run))),
+        injected=injected_lines(run.recording),
         recovery=recovery(index),
         retries=tuple(_retries(run)),
         failures=tuple(_failures(run)),

@@ -60,6 +60,7 @@ def _facts(report: MissionReport) -> list[str]:
     for slow in rate.slowest:
         asked = ", ".join(slow.asked) or "no skill"
         lines.append(f"slow tick    @{slow.tick} took {slow.duration_s * 1e3:.0f} ms in {asked}")
+    lines += [f"injected     {line}" for line in report.injected]
     return [*lines, *_failed(report)]
 
 

@@ -10,6 +10,7 @@ from executive.engine.recording.messages import RecordedNode
 from executive.engine.recording.reader import Recording
 from executive.engine.ticks import NodeStatus, Tick
 from executive.inspector.brief import brief
+from executive.inspector.injected import injected_lines
 
 ICONS = {
     NodeStatus.SUCCESS: ("✓", "green"),
@@ -31,7 +32,8 @@ def summary_view(recording: Recording) -> RenderableType:
     header, result = recording.header, recording.result
     title = Text.assemble((header.mission, "bold"), f"  seed {header.seed}  {header.started_utc}")
     if result is None:
-        return Group(title, Text("no result: the run was killed, or still goes on", "bold red"))
+        ending = Text("no result: the run was killed, or still goes on", "bold red")
+        return Group(title, ending, *_injected(recording))
     report = result.report
     outcome = Text.assemble(
         (report.outcome, OUTCOME_STYLES[report.outcome]),
@@ -42,7 +44,11 @@ def summary_view(recording: Recording) -> RenderableType:
         lines.append(Text(f"because  {report.reason}"))
     lines += [Text(f"claim    {brief(report.claim)}")] if report.claim is not None else []
     lines += [Text(f"truth    {brief(report.truth)}")] if report.truth is not None else []
-    return Group(*lines)
+    return Group(*lines, *_injected(recording))
+
+
+def _injected(recording: Recording) -> list[Text]:
+    return [Text(f"injected {line}", "magenta") for line in injected_lines(recording)]
 
 
 def tick_view(recording: Recording, number: int, nodes: frozenset[int]) -> RenderableType:

@@ -25,7 +25,7 @@ _SHAPE = re.compile(
     r"(?:key\s+(?P<key>\S+?)\s*:\s+|(?P<node>[^\s:]+)\s*:\s*)(?P<what>\S.*?)\s*", re.DOTALL
 )
 _WHAT = re.compile(
-    r"(?P<kind>[a-z]+)(?:\s+(?P<argument>\S.*?))?\s*(?:@\s*(?P<nth>\d+)(?P<on>\+)?)?", re.DOTALL
+    r"(?P<kind>[a-z]+)(?:\s+(?P<argument>[^\s@].*?))?\s*(?:@\s*(?P<nth>\d+)(?P<on>\+)?)?", re.DOTALL
 )
 
 
