@@ -1,22 +1,23 @@
 """Why a tick goes another way than it did: the first node that decides otherwise, and by what."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 
 from executive.core.errors import InputError
 from executive.engine.expression import Expression, parse_expression
 from executive.inspector.brief import brief
 from executive.inspector.past import PastRun, terms_of
-from executive.inspector.rebuilt import Rebuilt, WrittenNode
+from executive.inspector.rebuilt import WrittenNode
 from executive.inspector.retick.differences import NOT_ASKED, NodeDifference, TickDifference
+from executive.inspector.retick.matching import own_words
 from executive.inspector.retick.replay import Replay
 
 
 class Causes:
     """Explains differences right after the tick in which they are."""
 
-    def __init__(self, run: PastRun, replay: Replay, written: Rebuilt) -> None:
-        """Know both sides: `written` are the trees that are ticked, with the values of now."""
-        self._run, self._replay, self._written = run, replay, written
+    def __init__(self, run: PastRun, replay: Replay) -> None:
+        """Know both sides."""
+        self._run, self._replay, self._written = run, replay, replay.written
 
     def of(self, found: TickDifference) -> tuple[str, ...]:
         """Return why a tick is not as it was, in lines."""
@@ -28,16 +29,16 @@ class Causes:
             return tuple(f"{self._short(path)} was forced" for path in paths)
         # The first to answer otherwise whose own doing it is.
         for node in found.nodes:
-            reasons = tuple(dict.fromkeys(self._reasons(node, found.tick)))
-            if reasons:
+            if reasons := self._reasons(node, found.tick):
                 return reasons
         return ()
 
-    def _reasons(self, node: NodeDifference, tick: int) -> Iterator[str]:
-        yield from self._changed(node.path)
-        index = self._run.index.indices[node.path]
+    def _reasons(self, node: NodeDifference, tick: int) -> tuple[str, ...]:
+        """Return what a node itself does otherwise; nothing where it only follows others."""
+        index, reasons = self._run.index.indices[node.path], []
         if not node.now.startswith(NOT_ASKED) and self._run.index.answers[tick, index]:
-            yield from self._conditions(node.path, index, tick)
+            reasons = [*self._conditions(node.path, index, tick)]
+        return tuple(reasons or self._changed(node.path))
 
     def _write(self, writer: str) -> str:
         changed = "; ".join(self._changed(writer))
@@ -45,10 +46,10 @@ class Causes:
 
     def _changed(self, path: str) -> Iterator[str]:
         """Yield what the file says otherwise about a node."""
-        before, now = self._run.trees.nodes.get(path), self._written.nodes.get(path)
+        before, now = self._run.trees.nodes.get(path), self._now(path)
         if before is None or now is None:
             return
-        was, is_now = _own_words(before), _own_words(now)
+        was, is_now = own_words(before), own_words(now)
         for key in dict.fromkeys([*was, *is_now]):
             if was.get(key) != is_now.get(key):
                 old, new = was.get(key, "nothing"), is_now.get(key, "nothing")
@@ -56,19 +57,27 @@ class Causes:
 
     def _conditions(self, path: str, node: int, tick: int) -> Iterator[str]:
         """Yield what a condition found then and finds now."""
-        now = self._written.nodes.get(path)
+        now = self._now(path)
         if now is None:
             return
         asked = {one.keyword: one for one in self._run.conditions(node, tick)}
         for keyword, expression in now.conditions().items():
             then, value = asked.get(keyword), self._value(expression, now)
-            if then is not None and value is not None and then.value is not value:
-                terms = ", ".join(self._terms(expression, now))
-                was = "not known" if then.value is None else str(then.value).lower()
-                yield (
-                    f"{self._short(path)}: {expression.text} was {was}, is {str(value).lower()}"
-                    + (f"; {terms}" if terms else "")
-                )
+            if then is None or value is None or then.value is value:
+                continue
+            was = "not known" if then.value is None else str(then.value).lower()
+            again = "" if expression.text == then.text else f"{expression.text} "
+            terms = "".join(f"; {term}" for term in self._terms(expression, now))
+            yield (
+                f"{self._short(path)}: {then.text} was {was}, {again}is {str(value).lower()}{terms}"
+            )
+
+    def _now(self, path: str) -> WrittenNode | None:
+        """Return a recorded node as it is written now, perhaps at another path."""
+        old = self._run.index.indices.get(path)
+        new = None if old is None else self._replay.current.get(old)
+        at = path if new is None else self._replay.tree.nodes[new].path
+        return self._written.nodes.get(at)
 
     def _value(self, expression: Expression, node: WrittenNode) -> bool | None:
         try:
@@ -87,24 +96,3 @@ class Causes:
 
     def _short(self, path: str) -> str:
         return self._run.names.of_path(path)
-
-
-def _own_words(node: WrittenNode) -> Mapping[str, str]:
-    """Return what a file says about a node itself, by key."""
-    model = node.spec.model
-    if node.is_guard:
-        endings = {
-            f"{when}/{key}": text
-            for when, texts in model.endings.items()
-            for key, text in texts.items()
-        }
-        return {**model.guards, **endings}
-    own = model.model_dump(
-        mode="json",
-        by_alias=True,
-        exclude_unset=True,
-        exclude={"children", "child", "cases", "default", "name", "about"},
-    )
-    guards = {*model.guards, *model.endings}
-    words = {key: brief(value) for key, value in own.items() if key not in guards}
-    return {"kind": model.kind, **words}

@@ -77,6 +77,8 @@ class Comparison:
         self._new = np.array([new for new, _ in pairs], np.intp)
         self._old = np.array([old for _, old in pairs], np.intp)
         self._statuses = np.zeros(len(replay.recorded), np.int8)
+        nodes = replay.tree.nodes
+        self._writers = {nodes[new].path: index.nodes[old].path for new, old in pairs}
         # A tick that is taken up in its middle resets nodes that a whole one resets in the next.
         self._resumed = index.recording.header.resumed_from is not None
         self._exact = replay.recorded == tuple(range(len(index.nodes)))
@@ -141,14 +143,16 @@ class Comparison:
         if not tick.writes and not recorded.writes:
             return
         form = self._replay.board.form
-        now = [(write, form(write.value)) for write in tick.writes if write.writer != WHAT_IF]
-        then = [(write, write.value) for write in recorded.writes]
-        if [(w.key, w.writer, value) for w, value in now] == [
-            (w.key, w.writer, value) for w, value in then
-        ]:
+        now = [
+            (write.key, self._writers.get(write.writer, write.writer), form(write.value))
+            for write in tick.writes
+            if write.writer != WHAT_IF
+        ]
+        then = [(write.key, write.writer, write.value) for write in recorded.writes]
+        if now == then:
             return
-        last_now = {write.key: (write.writer, value) for write, value in now}
-        last_then = {write.key: (write.writer, value) for write, value in then}
+        last_now = {key: (writer, value) for key, writer, value in now}
+        last_then = {key: (writer, value) for key, writer, value in then}
         for key in dict.fromkeys([*last_then, *last_now]):
             if last_then.get(key) != last_now.get(key):
                 writer = (last_now.get(key) or last_then[key])[0]

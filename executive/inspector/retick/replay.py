@@ -15,10 +15,12 @@ from executive.engine.skill_node import SkillBehaviour
 from executive.engine.stopping import stop_running
 from executive.engine.ticks import NodeStatus, Tick
 from executive.inspector.past import PastRun
+from executive.inspector.rebuilt import Rebuilt
+from executive.inspector.retick.matching import matched
 from executive.inspector.retick.program import ReloadedProgram
 from executive.inspector.retick.question import changed
 from executive.inspector.retick.script import RecordedScript
-from executive.inspector.retick.standins import Beyond, OutsideError, StandIns, WhatIf
+from executive.inspector.retick.standins import Beyond, OutsideError, Setting, StandIns, WhatIf
 from executive.inspector.retick.values import ReplayBoard
 
 WHAT_IF = "what-if"
@@ -51,8 +53,10 @@ class Replay:
         tree: The tree that is ticked.
         board: Its values.
         recorded: Index in the recording of each of its nodes, None where it has none.
+        written: Its trees as they are written, with the values of now.
         stand_ins: What answers for its skills.
         script: What the recording says.
+        set_values: Values that the question has changed so far.
     """
 
     def __init__(
@@ -87,11 +91,10 @@ class Replay:
         before = self._built(original, ReplayBoard(*self._values))
         _require_recorded(run, before)
         self.tree = self._built(program, self.board)
-        indices = run.index.indices
-        self.recorded: tuple[int | None, ...] = tuple(
-            indices.get(node.path) if _fits(node.kind, run, indices.get(node.path)) else None
-            for node in self.tree.nodes
+        self.written = Rebuilt(
+            run.recording.header.model_copy(update={"sources": program.sources}), self.board
         )
+        self.recorded = matched(self.tree.nodes, run.index, run.trees, self.written)
         self.stand_ins = StandIns(
             self.script,
             self.tree,
@@ -104,6 +107,7 @@ class Replay:
             self.board.filter_with(self.script.rewritten)
         self._probe = TreeProbe(self.tree, self.stand_ins.intercept)
         self._pauses_over = 0
+        self.set_values: list[Setting] = []
 
     @cached_property
     def current(self) -> dict[int, int]:
@@ -153,6 +157,7 @@ class Replay:
             value = changed(current, setting, setting.fields)
             if not self.board.holds(setting.key, self.board.form(value)):
                 self.board.write(setting.key, value, WHAT_IF)
+                self.set_values.append(setting)
 
     def _built(self, program: ReloadedProgram, board: ReplayBoard) -> BuiltTree:
         header = self._run.recording.header
@@ -164,13 +169,6 @@ class Replay:
             seed=header.seed,
             blackboard=board,
         )
-
-
-def _fits(kind: str, run: PastRun, node: int | None) -> bool:
-    """Return whether a node is of the kind of a recorded one; a skill is no composite."""
-    if node is None:
-        return False
-    return (kind == "skill") == (run.index.nodes[node].kind == "skill")
 
 
 def _require_recorded(run: PastRun, tree: BuiltTree) -> None:

@@ -8,12 +8,13 @@ from pathlib import Path
 from executive.core.registry import Registry
 from executive.engine.ticks import NodeStatus
 from executive.inspector.past import PastRun
-from executive.inspector.rebuilt import Rebuilt
 from executive.inspector.retick.cause import Causes
 from executive.inspector.retick.differences import Comparison, TickDifference
-from executive.inspector.retick.program import ReloadedProgram, reload_program
+from executive.inspector.retick.program import reload_program
 from executive.inspector.retick.replay import Repeated, Replay
 from executive.inspector.retick.standins import Asked, Beyond, WhatIf
+
+OUTSIDE = "outside the recording"
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,6 +47,7 @@ class Retick:
         outside: Skills that were asked outside the recording, each once.
         recorded_end: How the run ended.
         end: How it ends now.
+        moved: Leaves that are at another path, or have another name: then and now.
         added: Paths of nodes that are only in the tree that was ticked.
         removed: Paths of nodes that are only in the recording.
         notes: What else is to be known.
@@ -61,6 +63,7 @@ class Retick:
     outside: tuple[Outside, ...]
     recorded_end: str
     end: str
+    moved: tuple[tuple[str, str], ...]
     added: tuple[str, ...]
     removed: tuple[str, ...]
     notes: tuple[str, ...]
@@ -94,15 +97,16 @@ def retick(
     """
     original = reload_program(run.recording.header, types)
     program = reload_program(run.recording.header, types, edited) if edited else original
-    replay = Replay(run, original, program, types, what_if=what_if or WhatIf(), beyond=beyond)
-    return _Reticking(run, replay, program).result()
+    question = what_if or WhatIf()
+    replay = Replay(run, original, program, types, what_if=question, beyond=beyond)
+    return _Reticking(run, replay, question).result()
 
 
 class _Reticking:
     """One comparison under way."""
 
-    def __init__(self, run: PastRun, replay: Replay, program: ReloadedProgram) -> None:
-        self._run, self._replay, self._program = run, replay, program
+    def __init__(self, run: PastRun, replay: Replay, question: WhatIf) -> None:
+        self._run, self._replay, self._question = run, replay, question
         self._first: TickDifference | None = None
         self._causes: tuple[str, ...] = ()
         self._later: Counter[str] = Counter()
@@ -113,12 +117,13 @@ class _Reticking:
         comparison = Comparison(self._replay, self._run.index)
         for repeated in self._replay.ticks():
             self._take(repeated, comparison.of(repeated))
-        paths = {node.path for node in self._replay.tree.nodes}
-        known = self._run.index.indices
+        tree, index, recorded = self._replay.tree, self._run.index, self._replay.recorded
+        pairs = [(tree.nodes[new].path, old) for new, old in enumerate(recorded)]
+        known = {old for old in recorded if old is not None}
         return Retick(
             ticks=self._ticks,
             of_ticks=self._replay.script.length,
-            nodes=len(paths),
+            nodes=len(recorded),
             first=self._first,
             causes=self._causes,
             later_ticks=self._later_ticks,
@@ -126,10 +131,27 @@ class _Reticking:
             outside=tuple(self._outside()),
             recorded_end=self._recorded_end(),
             end=self._end(),
-            added=tuple(node.path for node in self._replay.tree.nodes if node.path not in known),
-            removed=tuple(node.path for node in self._run.index.nodes if node.path not in paths),
-            notes=(),
+            moved=tuple(
+                (index.nodes[old].path, path)
+                for path, old in pairs
+                if old is not None and index.nodes[old].path != path
+            ),
+            added=tuple(path for path, old in pairs if old is None),
+            removed=tuple(node.path for old, node in enumerate(index.nodes) if old not in known),
+            notes=tuple(self._notes()),
         )
+
+    def _notes(self) -> Iterator[str]:
+        """Yield why a value that was set may have changed nothing."""
+        tick = self._question.tick
+        for setting in self._question.values:
+            name = setting.key.rpartition(":")[2]
+            if setting not in self._replay.set_values:
+                yield f"{name} had that value already"
+            for place in self._run.index.writes_in.get(tick, ()):
+                if place.key == setting.key:
+                    writer = self._run.names.of_path(place.writer)
+                    yield f"{name} was written by {writer} in tick {tick} itself, after it was set"
 
     def _take(self, repeated: Repeated, found: TickDifference | None) -> None:
         if repeated.recorded.number < self._replay.script.length:
@@ -144,8 +166,7 @@ class _Reticking:
         self._later.update(node.path for node in found.nodes)
 
     def _explained(self, found: TickDifference) -> tuple[str, ...]:
-        header = self._run.recording.header.model_copy(update={"sources": self._program.sources})
-        return Causes(self._run, self._replay, Rebuilt(header, self._replay.board)).of(found)
+        return Causes(self._run, self._replay).of(found)
 
     def _outside(self) -> Iterator[Outside]:
         first: dict[int, Asked] = {}
@@ -177,7 +198,7 @@ class _Reticking:
             return "no tick was ticked again"
         number = last.recorded.number
         if last.outside:
-            return f"outside the recording at tick {number}"
+            return f"{OUTSIDE} at tick {number}"
         if last.error is not None:
             return f"error at tick {number}: {last.error}"
         root = last.answers.get(0, NodeStatus.RUNNING)

@@ -7,7 +7,7 @@ from rich.text import Text
 
 from executive.inspector.past import PastRun
 from executive.inspector.retick.differences import NodeDifference, WriteDifference
-from executive.inspector.retick.retick import Outside, Retick
+from executive.inspector.retick.retick import OUTSIDE, Outside, Retick
 
 _MANY = 12
 
@@ -26,6 +26,7 @@ def retick_lines(found: Retick, run: PastRun) -> Iterator[Text]:
         yield from _later(found, run)
     for outside in found.outside[:_MANY]:
         yield _outside(outside, run)
+    yield from _some([f"moved: {old} is {new} now" for old, new in found.moved], "moved nodes")
     yield from _some([f"new: {path}" for path in found.added], "new nodes")
     yield from _some([f"no longer there: {path}" for path in found.removed], "nodes that are gone")
     yield from (Text(f"  {note}", "bright_black") for note in found.notes)
@@ -34,6 +35,8 @@ def retick_lines(found: Retick, run: PastRun) -> Iterator[Text]:
     else:
         yield Text.assemble(("the run ", "bold"), f"ended with {found.recorded_end}")
         yield Text.assemble(("now ", "bold"), found.end)
+        if found.end.startswith(OUTSIDE):
+            yield Text("  try --beyond running to go on", "bright_black")
 
 
 def _headline(found: Retick) -> Iterator[Text]:
