@@ -114,8 +114,9 @@ class Parts:
             part_bytes: A part that has reached this size is closed.
         """
         path.parent.mkdir(parents=True, exist_ok=True)
-        for stale in parts_of(path)[1:]:
-            stale.unlink()
+        parts = parts_of(path)
+        for stale in (*parts[1:], *map(_packing_path, parts)):
+            stale.unlink(missing_ok=True)
         self._path, self._first, self._limit = path, first, part_bytes
         self._closed: list[Path] = []
         self._part = self._begin(path)
@@ -163,8 +164,7 @@ def part_path(path: Path, number: int) -> Path:
 def parts_of(path: Path) -> list[Path]:
     """Return the files of a recording in order, given any of them; the first need not exist."""
     stem, part, _ = path.stem.rpartition(".part")
-    first = path.with_name(f"{stem}{path.suffix}")
-    if part and first.exists():
+    if part and (first := path.with_name(f"{stem}{path.suffix}")).exists():
         path = first
     found, number = [path], 2
     while part_path(path, number).exists():
@@ -173,12 +173,17 @@ def parts_of(path: Path) -> list[Path]:
     return found
 
 
+def _packing_path(path: Path) -> Path:
+    """Return the file that a part is packed into; a kill meanwhile leaves it behind."""
+    return path.with_name(f"{path.name}.packing")
+
+
 def compact(path: Path) -> None:
     """Write a closed file once more, with compressed chunks and an index.
 
     Without room for that, the file stays as it is: it is complete.
     """
-    packed_path = path.with_name(f"{path.name}.packing")
+    packed_path = _packing_path(path)
     try:
         _pack(path, packed_path)
         packed_path.replace(path)

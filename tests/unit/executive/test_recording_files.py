@@ -145,6 +145,8 @@ def test_each_part_opens_alone_in_any_viewer_and_begins_with_a_keyframe(tmp_path
 
 def test_a_new_recording_leaves_no_part_of_an_older_one(tmp_path):
     write_parts(tmp_path / "a.mcap")
+    for packed in ("a.mcap.packing", "a.part2.mcap.packing"):  # as a kill leaves them
+        (tmp_path / packed).touch()
     write_parts(tmp_path / "a.mcap", ticks=10)
     assert len(Recording.open(tmp_path / "a.mcap")) == 10
     assert len(list(tmp_path.iterdir())) == len(parts_of(tmp_path / "a.mcap")) == 1
