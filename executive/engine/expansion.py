@@ -69,6 +69,8 @@ def _details(model: NodeModel, name: str) -> Iterator[str]:
     else:
         yield _shown(getattr(model, model.kind))
         yield from _parameters(model)
+    if model.checkpoint:
+        yield "checkpoint"
     yield from (f"{keyword} {text}" for keyword, text in model.guards.items())
     yield from (f"{keyword} {_shown(texts)}" for keyword, texts in model.endings.items())
 

@@ -1,6 +1,7 @@
 """`check`, `tree` and `skills` on the command line."""
 
 import json
+import time
 
 import pytest
 from toy_language import toy_skills
@@ -26,7 +27,7 @@ root:
         times: 3
         delay_s: 0.5
         child: {subtree: inner, in: {part: $p, factor: $factor}, out: {mass: $mass}}
-    - {when: mass > 1, unless: factor > 9}
+    - {when: mass > 1, unless: factor > 9, checkpoint: true}
 """
 INNER = """
 format: 1
@@ -90,7 +91,7 @@ def test_tree_show_puts_subtrees_in(cellwright, toy_file):
         "├── retry again  times 3; delay_s 0.5",
         "│   └── sequence inner  subtree inner; in part: $p, $factor; out $mass",
         "│       └── reading  skill weigh; in $part, $factor; out $mass",
-        "└── when  mass > 1; unless factor > 9",
+        "└── when  mass > 1; checkpoint; unless factor > 9",
     ]
 
 
@@ -141,3 +142,29 @@ def test_schema_file_is_that_of_the_models():
 
 def test_schema_knows_every_kind_of_node():
     assert len(json.loads(schema_text())["$defs"]["Node"]["oneOf"]) == len(KINDS)
+
+
+def test_a_file_that_is_no_text_is_one_fault_among_the_others(cellwright, tmp_path):
+    (tmp_path / "broken.yaml").write_text(BROKEN)
+    (tmp_path / "latin.yaml").write_bytes(b"format: 1\nabout: caf\xe9\n")
+    result = cellwright("check", "--json", tmp_path)
+    faults = json.loads(result.stdout)["faults"]
+    assert result.exit_code == 2
+    assert [(fault["line"], fault["column"]) for fault in faults] == [(3, 15), (2, 11)]
+    assert faults[1]["message"] == "not UTF-8 text: byte 0xe9; try to save it as UTF-8"
+
+
+def test_a_tree_that_uses_what_has_faults_is_not_ok(cellwright, tmp_path):
+    (tmp_path / "broken.yaml").write_text(BROKEN)
+    (tmp_path / "outer.yaml").write_text("format: 1\ntree: outer\nroot: {subtree: broken}\n")
+    result = cellwright("check", tmp_path / "outer.yaml")
+    assert "outer.yaml: not ok: tree outer uses what has faults" in result.stdout
+
+
+def test_a_long_sequence_is_checked_in_little_time(cellwright, tmp_path):
+    file = tmp_path / "long.yaml"
+    writes = "".join(f"    - {{set: {{k{i}: 1}}}}\n" for i in range(3000))
+    file.write_text(f"format: 1\ntree: long\nroot:\n  sequence:\n{writes}")
+    begun_s = time.process_time()
+    assert "3001 nodes" in cellwright("check", file).stdout
+    assert time.process_time() - begun_s < 15.0
