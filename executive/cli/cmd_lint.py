@@ -49,10 +49,10 @@ def lint(
 
 def _halts(report: LintReport, *, as_json: bool) -> str:
     if as_json:
-        trees = {name: [asdict(one) for one in leaves] for name, leaves in report.halts.items()}
+        trees = {name: [asdict(one) for one in leaves] for name, leaves in report.halts().items()}
         return json.dumps(trees, indent=2)
     lines = [str(fault) for fault in report.faults]
-    for leaves in report.halts.values():
+    for leaves in report.halts().values():
         for leaf in leaves:
             by = leaf.by or ("nobody but a stop of the run",)
             lines += [leaf.node, *(f"  {one}" for one in by)]
@@ -68,7 +68,7 @@ def _as_json(report: LintReport, *, strict: bool) -> str:
     waived = [{**asdict(one), "reason": reason} for one, reason in report.waived]
     document = {
         "ok": not (report.findings or report.faults or (strict and waived)),
-        "files": report.files,
+        "files": len(report.programs),
         "findings": [asdict(one) for one in report.findings],
         "waived": waived,
         "faults": [asdict(fault) for fault in report.faults],
@@ -78,7 +78,7 @@ def _as_json(report: LintReport, *, strict: bool) -> str:
 
 def _summary(report: LintReport, count: int, *, strict: bool) -> str:
     parts = [
-        f"{report.files} tree{'' if report.files == 1 else 's'}",
+        f"{len(report.programs)} tree{'' if len(report.programs) == 1 else 's'}",
         f"{count} finding{'' if count == 1 else 's'}",
     ]
     if report.waived and not strict:

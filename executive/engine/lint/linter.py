@@ -24,15 +24,17 @@ class LintReport:
         findings: What no waiver lets stand, in the order of file and line.
         waived: What a waiver lets stand, with its reason.
         faults: What keeps files from being looked at.
-        files: How many trees and missions were looked at.
-        halts: Who can halt each leaf of each of them, by its name.
+        programs: The trees and missions that were looked at.
     """
 
     findings: tuple[Finding, ...]
     waived: tuple[tuple[Finding, str], ...]
     faults: tuple[Fault, ...]
-    files: int
-    halts: Mapping[str, tuple[Halts, ...]]
+    programs: tuple[Program, ...]
+
+    def halts(self) -> Mapping[str, tuple[Halts, ...]]:
+        """Return who can halt each leaf of each tree or mission, by the name of that."""
+        return {one.tree.name: tuple(find_halts(Subject(one))) for one in self.programs}
 
 
 def lint_files(
@@ -58,8 +60,7 @@ def lint_files(
     for program in programs:
         looking.look(program)
     findings, waived = looking.sorted_out()
-    halts = {program.tree.name: tuple(find_halts(Subject(program))) for program in programs}
-    return LintReport(tuple(findings), tuple(waived), tuple(faults), len(programs), halts)
+    return LintReport(tuple(findings), tuple(waived), tuple(faults), tuple(programs))
 
 
 @dataclass(slots=True)

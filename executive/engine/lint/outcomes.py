@@ -265,10 +265,12 @@ class Outcomes:
     Attributes:
         skills: Skills by name.
         subtrees: Trees by name.
+        goes_on: Whether what raises fails, instead of ending the mission.
     """
 
     skills: Registry[type[Skill]]
     subtrees: Mapping[str, TreeSpec]
+    goes_on: bool = False
     _known: dict[NodeSpec, May] = field(default_factory=dict)
 
     def may(self, node: NodeSpec) -> May:
@@ -279,7 +281,7 @@ class Outcomes:
 
     def _bare(self, node: NodeSpec) -> May:
         if (skill := self.skill(node)) is not None:
-            return May(succeed=True, fail=bool(skill.REASONS), run=True)
+            return May(succeed=True, fail=bool(skill.REASONS) or self.goes_on, run=True)
         if (inside := self.inside(node)) is not None:
             return self.may(inside)
         return traits(node).may(node.model, [self.may(child) for child in node.children])

@@ -25,10 +25,23 @@ class Subject:
         outcomes: How its nodes can end.
     """
 
-    def __init__(self, program: Program, known: "dict[str, Subject] | None" = None) -> None:
-        """Look at a program; `known` are subtrees of it that were looked at before."""
+    def __init__(
+        self,
+        program: Program,
+        known: "dict[str, Subject] | None" = None,
+        goes_on: bool | None = None,
+    ) -> None:
+        """Look at a program.
+
+        Args:
+            program: The tree with the trees that it uses.
+            known: Subtrees of it that were looked at before.
+            goes_on: Whether its mission goes on when a node raises; as it says itself if None.
+        """
         self.program, self.tree = program, program.tree
-        self.outcomes = Outcomes(program.skills, program.subtrees)
+        if goes_on is None:
+            goes_on = self.mission is not None and self.mission.on_error == "fail"
+        self.outcomes = Outcomes(program.skills, program.subtrees, goes_on)
         self._inner: dict[str, Subject] = {} if known is None else known
 
     @cached_property
@@ -72,7 +85,7 @@ class Subject:
             return None
         if name not in self._inner:
             program = dataclasses.replace(self.program, tree=tree)
-            self._inner[name] = Subject(program, self._inner)
+            self._inner[name] = Subject(program, self._inner, self.outcomes.goes_on)
         return self._inner[name]
 
     def written_below(self, node: NodeSpec) -> frozenset[str]:

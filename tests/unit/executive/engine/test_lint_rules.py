@@ -353,7 +353,7 @@ root:
               - {subtree: acting, while: not a}
               - {wait: 3}
 """
-    halts = {one.node: one.by for one in lint(text).halts["t"]}
+    halts = {one.node: one.by for one in lint(text).halts()["t"]}
     block = "t/reactive_sequence"
     around_it = ("t: timeout after 20 s", f"{block}: safe, asked in every tick")
     assert halts == {
@@ -368,4 +368,12 @@ root:
         ),
     }
     mission = lint(f"format: 1\nmission: t\ncell: c\ntimeout_s: 60.0\nroot: {WORK}\n")
-    assert [one.by for one in mission.halts["t"]] == [("the mission after 60 s",)]
+    assert [one.by for one in mission.halts()["t"]] == [("the mission after 60 s",)]
+
+
+def test_a_skill_without_reasons_may_fail_where_a_mission_goes_on_after_errors(lint):
+    root = f"root: {{selector: [{FIND}, {WORK}]}}\n"
+    mission = "format: 1\nmission: t\ncell: c\ntimeout_s: 60.0\n"
+    ends, goes_on = lint(mission + root), lint(f"{mission}on_error: fail\n{root}")
+    assert "L101" in [one.code for one in ends.findings]
+    assert "L101" not in [one.code for one in goes_on.findings]
