@@ -28,7 +28,7 @@ from executive.core.outcome import failure, success
 from executive.core.registry import Registry
 from executive.core.skill import In, Port, Skill, SkillRun
 from executive.engine.builder import BuiltTree, build
-from executive.engine.loader import load_program
+from executive.engine.loader import Program, load_program
 
 STATION_NODES = 22
 BLOCK_NODES = 9
@@ -163,6 +163,11 @@ class ScriptedSkill(Skill):
 
 def our_tree(shape: Node, scripts: Scripts) -> BuiltTree:
     """Return a shape as a tree of ours, by way of a file (JSON is YAML), checks and builder."""
+    return build(our_program(shape), devices={"scripts": scripts}, clock=ManualClock())
+
+
+def our_program(shape: Node) -> Program:
+    """Return a shape as a checked program."""
     skills: Registry[type[Skill]] = Registry("skill")
     skills.add("scripted", ScriptedSkill)
     with TemporaryDirectory() as name:
@@ -172,8 +177,7 @@ def our_tree(shape: Node, scripts: Scripts) -> BuiltTree:
             if node.kind == SUBTREE:
                 _write(node.children[0], folder, node.name)
         file = folder / f"{shape.name}.yaml"
-        program = load_program(file, skills=skills, types=Registry("port type"))
-    return build(program, devices={"scripts": scripts}, clock=ManualClock())
+        return load_program(file, skills=skills, types=Registry("port type"))
 
 
 def _write(shape: Node, folder: Path, name: str = "") -> None:

@@ -22,7 +22,7 @@ from py_trees.behaviour import Behaviour
 from py_trees.blackboard import Blackboard
 from py_trees.trees import BehaviourTree
 
-from benchmarks import checking
+from benchmarks import checking, reticking
 from benchmarks.harness import Row, median, percentile_95
 from benchmarks.tick_trees import Node, Scripts, blocks, cell, chain, our_tree, their_tree
 from executive.engine.builder import BuiltTree
@@ -51,7 +51,7 @@ def run(quick: bool, seed: int) -> Sequence[Row]:
         rows += _ratios("_all_ticked", blocks(177), seed, pairs, path)
         rows += _growth(seed, 3 if quick else 15)
         rows += _recording(hour, seed, path)
-    return [*rows, *checking.run(quick, seed)]
+    return [*rows, *reticking.run(quick, seed), *checking.run(quick, seed)]
 
 
 def _ratios(

@@ -14,6 +14,7 @@ from executive.engine.probe import TreeProbe
 from executive.engine.skill_node import SkillBehaviour
 from executive.engine.stopping import stop_running
 from executive.engine.ticks import NodeStatus, Tick
+from executive.inspector.index import RUNNING
 from executive.inspector.past import PastRun
 from executive.inspector.rebuilt import Rebuilt
 from executive.inspector.retick.matching import matched
@@ -121,10 +122,14 @@ class Replay:
             yield repeated
             if repeated.outside:
                 return
-            if repeated.error is not None or self._probe.answer is not NodeStatus.RUNNING:
+            if repeated.error is not None or self._answers_early():
                 break
         if self.script.length < len(self._run.index) and number == self.script.length - 1:
             yield self._end(number + 1)
+
+    def _answers_early(self) -> bool:
+        """Return whether the root has answered in a tick after which the run went on."""
+        return self._probe.answer is not NodeStatus.RUNNING and self.script.answer(0) == RUNNING
 
     def _tick(self, number: int) -> Repeated:
         recorded = self.script.at(number)
