@@ -1,4 +1,4 @@
-"""The whole of cable perception, from the image alone and without learned models."""
+"""The whole of cable perception, from the image alone; learned models only where asked for."""
 
 import time
 from collections.abc import Callable, Sequence
@@ -26,9 +26,20 @@ from perception.cable.types import CableScene, Crossing, Endpoint, Knot, Points,
 from perception.cable.wholeness import wholeness
 from perception.camera import GreyImage
 
+
+def _learned_tracer() -> Tracer:
+    # Networks need the extra `learn`; who does not ask for them does without.
+    from perception.cable.tracers.both_ways import BothWaysTracer
+    from perception.cable.tracers.learned import LearnedTracer
+    from perception.models.store import FOLDER
+
+    return BothWaysTracer(LearnedTracer(FOLDER / "tracer_v2"))
+
+
 TRACERS: dict[str, Callable[[], Tracer]] = {
     "skeleton": SkeletonTracer,
     "analytic": AnalyticTracer,
+    "learned": _learned_tracer,
 }
 CLASSIFIERS: dict[str, Callable[[], CrossingClassifier]] = {
     "edges": EdgeClassifier,
@@ -55,7 +66,7 @@ class ClassicVisionConfig:
         grasps: The search for cage and pinch points.
     """
 
-    tracer: Literal["skeleton", "analytic"] = "skeleton"
+    tracer: Literal["skeleton", "analytic", "learned"] = "skeleton"
     classifier: Literal["edges", "continuity"] = "edges"
     start_steps: int = 6
     hidden_rows: int = 0

@@ -160,6 +160,32 @@ def beside(rng: np.random.Generator, curve: Points) -> Points:
     return resample(gaussian_filter1d(moved, rng.uniform(2.0, 9.0), axis=0, mode="nearest"))
 
 
+def touching(rng: np.random.Generator, curve: Points) -> Points:
+    """Return a curve that comes close to another one, runs beside it and parts again.
+
+    It either touches the other, bending away to its own side, or crosses it at a small angle;
+    only the curvature of both tells which.
+    """
+    reach = int(rng.uniform(8.0, 24.0) / SPACING)
+    at = int(rng.integers(0, max(len(curve) - 2 * reach, 1)))
+    piece = curve[at : at + 2 * reach]
+    along = (np.arange(len(piece)) - 0.5 * len(piece)) * SPACING
+    tangent = np.gradient(piece, axis=0)
+    tangent /= np.maximum(np.linalg.norm(tangent, axis=1, keepdims=True), 1e-9)
+    normal = np.column_stack([-tangent[:, 1], tangent[:, 0]]) * rng.choice([-1.0, 1.0])
+    if rng.random() < 0.65:
+        offset = rng.uniform(0.8, 1.25) + 0.5 * rng.uniform(0.01, 0.2) * along**2
+    else:
+        offset = rng.uniform(0.08, 0.5) * along
+    beside_it = piece + normal * offset[:, None]
+    extent = float(np.ptp(curve, axis=0).max()) + 10.0
+    head, tail = (
+        _leave(rng, beside_it[a] - beside_it[b], beside_it[b], extent)
+        for a, b in ((6, 0), (-7, -1))
+    )
+    return through(np.vstack([head[::-1], beside_it[::4], tail]), rng.uniform(0.6, 1.5))
+
+
 FAMILIES: dict[str, Callable[[np.random.Generator, float], Points]] = {
     "random": random_curve,
     "parallel": parallel_curve,

@@ -18,6 +18,8 @@ Floats = NDArray[np.float64]
 FirstOver = Callable[[float, float], bool | None]
 
 MOST_NODES = 1400
+# Share of further cables that run along another one for a while.
+NEAR_ANOTHER = 0.45
 SHARES = {
     "random": 0.12,
     "parallel": 0.14,
@@ -134,13 +136,14 @@ def lay_scene(
 
 
 def _lines(rng: np.random.Generator, config: SceneConfig) -> list[Floats]:
-    count = config.cables or int(rng.choice([1, 2, 3], p=[0.4, 0.35, 0.25]))
+    count = config.cables or int(rng.choice([1, 2, 3], p=[0.25, 0.4, 0.35]))
     lines: list[Floats] = []
     left = MOST_NODES
     for _ in range(count):
         family = config.family or str(rng.choice(list(SHARES), p=list(SHARES.values())))
-        if lines and family == "parallel" and rng.random() < 0.6:
-            line = curves.beside(rng, lines[-1])
+        if lines and rng.random() < NEAR_ANOTHER:
+            near = curves.touching if rng.random() < 0.6 else curves.beside
+            line = near(rng, lines[-1])
         else:
             line = curves.FAMILIES[family](rng, config.extent)
         line = line[: max(left, 2)]
