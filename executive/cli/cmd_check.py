@@ -47,8 +47,14 @@ def _print(checked: Sequence[Checked], faults: Sequence[Fault]) -> None:
     faulty = {fault.file for fault in faults}
     for one in checked:
         if one.file not in faulty and one.name:
-            nodes = f", {one.nodes} nodes" if one.nodes else ""
-            typer.echo(f"{one.file}: ok: {one.kind} {one.name}{nodes}")
+            typer.echo(f"{one.file}: {_verdict(one)}")
     if faults:
         count = len(faults)
         typer.echo(f"{count} fault{'s' if count > 1 else ''}", err=True)
+
+
+def _verdict(one: Checked) -> str:
+    if one.kind in ("tree", "mission") and not one.nodes:
+        return f"not ok: {one.kind} {one.name} uses what has faults"
+    nodes = f", {one.nodes} node{'s' if one.nodes > 1 else ''}" if one.nodes else ""
+    return f"ok: {one.kind} {one.name}{nodes}"

@@ -10,12 +10,15 @@ T = TypeVar("T")
 
 
 def closest(name: str, known: list[str]) -> str:
-    """Return `did you mean 'x'? (known: ...)` for a message about an unknown name."""
+    """Return `did you mean 'x'? (known: ...)` for a message about an unknown name.
+
+    Without a match only the known names are left: `known: ...`.
+    """
     import difflib  # only for those who mistype
 
     match = difflib.get_close_matches(name, known, n=1, cutoff=0.5)
-    hint = f"did you mean {match[0]!r}? " if match else ""
-    return f"{hint}(known: {', '.join(sorted(known)) or 'none'})"
+    names = f"known: {', '.join(sorted({*known})) or 'none'}"
+    return f"did you mean {match[0]!r}? ({names})" if match else names
 
 
 class Registry(Generic[T]):

@@ -7,6 +7,7 @@ underscore is ever read; `executive.engine.evaluation` makes a function of what 
 """
 
 import ast
+import re
 import warnings
 from dataclasses import dataclass
 from typing import Any, Final
@@ -29,6 +30,14 @@ MAX_NESTING: Final = 60
 """How deep an expression may be nested; a tick evaluates it in nested calls."""
 
 _ALLOWED: Final = (*FORMS, *OPERATORS, ast.And, ast.Or, ast.Load)
+_OTHERWISE: Final = (
+    (r"&&", "and"),
+    (r"\|\|", "or"),
+    (r"!(?!=)", "not"),
+    (r"(?<![=<>!:])=(?!=)", "=="),
+    (r"\$", "keys without a $ inside an expression"),
+    (r"\?", "a if c else b"),
+)
 _FRAMES: Final = ("ag_frame", "cr_frame", "gi_frame", "tb_frame")
 
 
@@ -78,10 +87,19 @@ def parse_expression(text: str) -> Expression:
             tree = ast.parse(text.strip(), mode="eval").body
     except (SyntaxError, ValueError, MemoryError, RecursionError, Warning) as error:
         what = getattr(error, "msg", None) or error
-        raise InputError(f"{text!r} is not an expression: {what}") from None
+        raise InputError(f"{text!r} is not an expression: {what}{_hint(text)}") from None
     gate = _Gate(text)
     tree = gate.visit(tree)
     return Expression(text, tree, frozenset(gate.reads), frozenset(gate.asks), compiled(tree))
+
+
+def _hint(text: str) -> str:
+    """Say what is written otherwise here, for what other languages write."""
+    bare = re.sub(r"\"[^\"]*\"|'[^']*'", "", text)
+    for pattern, ours in _OTHERWISE:
+        if re.search(pattern, bare):
+            return f"; try {ours}"
+    return ""
 
 
 class _Gate(ast.NodeTransformer):

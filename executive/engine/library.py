@@ -164,7 +164,7 @@ class Library:
 
 
 def _read(file: Path, types: Registry[type]) -> Entry:
-    source = read_source(str(file), _text(file))
+    source = _source(file)
     document, faults = validate(source)
     tree: TreeSpec | None = None
     stubs: Mapping[str, type[Skill]] = {}
@@ -220,13 +220,18 @@ def _port(
     return Port(kind, port.about, port.unit, default)
 
 
-def _text(file: Path) -> str:
+def _source(file: Path) -> Source:
     try:
-        return file.read_text(encoding="utf-8")
+        data = file.read_bytes()
     except OSError as error:
         raise InputError(f"{file}: cannot be read: {error.strerror}") from None
+    try:
+        return read_source(str(file), data.decode("utf-8"))
     except UnicodeDecodeError as error:
-        raise InputError(f"{file}: is not UTF-8 text: {error.reason}") from None
+        line = data.count(b"\n", 0, error.start) + 1
+        column = error.start - data.rfind(b"\n", 0, error.start)
+        message = f"not UTF-8 text: byte 0x{data[error.start]:02x}; try to save it as UTF-8"
+        return Source(str(file), "", None, {}, {}, (Fault(str(file), line, column, "", message),))
 
 
 def kind_of_document(document: Document) -> str:
@@ -248,4 +253,5 @@ def _misnamed(document: Document, source: Source) -> list[Fault]:
 def _says(file: Path, kind: str) -> bool:
     """Return whether a file looks like a document of a kind; for messages, so without parsing."""
     lines = file.read_text(encoding="utf-8", errors="replace").splitlines()
-    return any(line.startswith(f"{kind}:") for line in lines)
+    keys = {line.partition(":")[0] for line in lines}
+    return kind in keys and not (kind == "cell" and "mission" in keys)  # a mission names its cell

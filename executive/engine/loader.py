@@ -98,7 +98,8 @@ def load_mission(
     loading = _Loading(path_or_name, "mission", skills, Shelf(types), search_paths)
     document = loading.library.document(loading.file)
     if document is not None and not isinstance(document, MissionDocument):
-        raise InputError(f"{loading.file}: expected a mission, got {document.name!r}")
+        given = f"the {kind_of_document(document)} {document.name!r}"
+        raise InputError(f"{loading.file}: expected a mission; got {given}")
     program, cell = loading.program(), loading.cell()
     if loading.faults or program is None or cell is None or document is None:
         raise DocumentError(loading.faults)

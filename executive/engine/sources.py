@@ -165,8 +165,8 @@ def read_source(file: str, text: str) -> Source:
         finally:
             loader.dispose()
     except yaml.MarkedYAMLError as error:
-        what = ", ".join(part for part in (error.context, error.problem) if part)
-        reading.complain(error.problem_mark or error.context_mark, f"not YAML: {what}")
+        mark: Any = error.problem_mark or error.context_mark
+        reading.complain(mark, _not_yaml(error, text.split("\n")[mark.line : mark.line + 1]))
     except yaml.reader.ReaderError as error:
         line = text.count("\n", 0, error.position) + 1
         reading.faults.append(Fault(file, line, 1, "", f"not YAML: {error.reason}"))
@@ -175,6 +175,19 @@ def read_source(file: str, text: str) -> Source:
     except ValueError as error:  # a number of thousands of digits
         reading.faults.append(Fault(file, 1, 1, "", f"cannot be read: {error}"))
     return Source(file, text, data, reading.keys, reading.values, tuple(reading.faults))
+
+
+def _not_yaml(error: yaml.MarkedYAMLError, line: list[str]) -> str:
+    """Say what the parser found, and what is behind it most often."""
+    indentation = re.match(r"\s*", line[0] if line else "")
+    if indentation and "\t" in indentation[0]:
+        return "not YAML: a tab in the indentation; expected blanks"
+    what = f"not YAML: {', '.join(part for part in (error.context, error.problem) if part)}"
+    hints = {"block": "the indentation of this line", "flow": "brackets, commas and quotes"}
+    hint = next((hint for word, hint in hints.items() if word in (error.context or "")), "")
+    if "quoted" in (error.context or ""):
+        hint = "the closing quote"
+    return f"{what}; look at {hint}" if hint else what
 
 
 def _refuse_anchors(text: str, reading: _Reading) -> None:

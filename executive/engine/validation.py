@@ -17,6 +17,7 @@ from executive.engine.document import (
     Document,
     InPort,
     Model,
+    NodeModel,
     OutPort,
     kind_of,
 )
@@ -46,6 +47,9 @@ _NAME: Final = "a name of lower-case letters, digits and _"
 _REFERENCE: Final = "a key of the blackboard such as $image"
 _FORMULA: Final = "an expression such as $2 * pause_s"
 _CODE: Final = "a code such as part.missing"
+_OF_ANY_NODE: Final = frozenset(
+    field.alias or name for name, field in NodeModel.model_fields.items()
+)
 
 
 def validate(source: Source) -> tuple[Document | None, list[Fault]]:
@@ -55,7 +59,8 @@ def validate(source: Source) -> tuple[Document | None, list[Fault]]:
         return None, faults
     if not isinstance(source.data, dict):
         kinds = ", ".join(DOCUMENTS)
-        return None, [_fault(source, (), f"expected a mapping with one of the keys {kinds}")]
+        wanted = f"expected a mapping with one of the keys {kinds}"
+        return None, [_fault(source, (), f"{wanted}; got {_shown(source.data)}")]
     found = [kind for kind in DOCUMENTS if kind in source.data]
     if found == ["mission", "cell"]:  # a mission names its cell
         found = ["mission"]
@@ -89,7 +94,7 @@ def _translate(source: Source, model: type[Document], error: ValidationError) ->
         match detail["type"]:
             case "extra_forbidden":
                 known = _known_keys(model, source.data, path, nodes)
-                message = f"unknown key {path[-1]!r}; {closest(str(path[-1]), known)}"
+                message = f"unknown key {path[-1]!r}; {_meant(str(path[-1]), known)}"
                 whole.append(_fault(source, path, message, at_key=True))
             case "missing":
                 whole.append(_fault(source, path, f"missing key {detail['loc'][-1]!r}"))
@@ -107,6 +112,12 @@ def _translate(source: Source, model: type[Document], error: ValidationError) ->
                 said[path, False].append(expected)
     whole += [_misfit(source, *place, wanted) for place, wanted in said.items()]
     return whole
+
+
+def _meant(key: str, known: list[str]) -> str:
+    if key.startswith("-"):
+        return "an entry of a list begins with a dash and a blank"
+    return closest(key, known)
 
 
 def _number(value: Any) -> Any:
@@ -153,7 +164,13 @@ def _no_node(value: object) -> str:
     kinds = [key for key in value if key in KINDS]
     if kinds:
         return f"a node has one kind; got {' and '.join(kinds)}, try one list entry for each"
-    odd = next(iter(value), "")
+    odd = next((key for key in value if key not in _OF_ANY_NODE), "")
+    if not odd:
+        return (
+            f"a node needs a kind, such as skill or sequence; got only {', '.join(value) or '{}'}"
+        )
+    if odd == "<<":
+        return "merge keys (<<) are not read; try a subtree for what is said twice"
     return f"unknown kind of node {odd!r}; {closest(odd, [*KINDS])}"
 
 

@@ -2,7 +2,8 @@
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, get_args, get_origin
+from typing import Literal as WordsOf
 
 from executive.core.errors import Fault, InputError
 from executive.core.registry import closest
@@ -225,7 +226,7 @@ class _Wirer:
             try:
                 fit(value.value, port.type)
             except ValueError as error:
-                self._complain(f"input {name!r}: {error}{_reference_hint(raw)}", "in", name)
+                self._complain(f"input {name!r}: {error}{_hint(raw, port.type)}", "in", name)
         elif value is not None:
             optional = not port.required and key_of(value) is not None
             place = f"input {name!r}"
@@ -241,7 +242,11 @@ class _Wirer:
         yield Gives(reference.removeprefix("$"), ("out", name), port=port)
 
 
-def _reference_hint(raw: object) -> str:
+def _hint(raw: object, kind: Any) -> str:
+    """Say what may have been meant by a text: a word of the type, or the key of that name."""
+    words = [str(word) for word in get_args(kind)] if get_origin(kind) is WordsOf else []
+    if isinstance(raw, str) and (meant := closest(raw, words)).startswith("did you mean"):
+        return f"; {meant}"
     is_name = isinstance(raw, str) and raw.isidentifier()
     return f"; try ${raw} for the key of that name" if is_name else ""
 

@@ -25,7 +25,7 @@ def test_devices_are_bound_by_name_and_type(bench):
     [
         ({}, "t: input 'n' is needed, and has no default"),
         ({"n": "x"}, "t: input 'n': expected int, got 'x'"),
-        ({"n": 1, "m": 2}, "t: unknown input 'm'; (known: n)"),
+        ({"n": 1, "m": 2}, "t: unknown input 'm'; known: n"),
     ],
 )
 def test_inputs_of_a_mission_are_checked(bench, inputs, message):

@@ -20,6 +20,8 @@ def faults_of(text):
     ("text", "message"),
     [
         ("[1]", "t.yaml:1:1: expected a mapping with one of the keys tree, mission, cell"),
+        ("# nothing", "stubs; got nothing"),
+        ("words", "stubs; got 'words'"),
         ("format: 1\nmisson: m\n", "'misson' is none, did you mean 'mission'?"),
         ("tree: t\ncell: c\n", "more than one kind of document: tree, cell"),
         ("format: 2\ntree: t\nroot: {when: true}", "t.yaml:1:9: format: expected 1; got 2"),
@@ -38,6 +40,13 @@ def test_faults_of_a_document(text, message):
     ("node", "message"),
     [
         ("{sequnce: []}", "t: unknown kind of node 'sequnce'; did you mean 'sequence'?"),
+        (
+            "{name: a, if: b}",
+            "t: a node needs a kind, such as skill or sequence; got only name, if",
+        ),
+        ("{name: a, sklil: b}", "t: unknown kind of node 'sklil'; did you mean 'skill'?"),
+        ("{<<: {skill: a}}", "merge keys (<<) are not read; try a subtree"),
+        ("\n  sequence:\n    -{skill: a}\n", "an entry of a list begins with a dash and a blank"),
         ("{skill: a, when: b}", "t: a node has one kind; got skill and when"),
         ("hello", "t: expected a node such as {skill: NAME}; got 'hello'"),
         ("{skill: a, nmae: b}", "t: unknown key 'nmae'; did you mean 'name'?"),

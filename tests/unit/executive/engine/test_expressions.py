@@ -84,6 +84,12 @@ def test_values_and_types_of_expressions(text, value, kind):
         ("n >", "is not an expression"),
         ("", "is not an expression"),
         ("a; b", "is not an expression"),
+        ("a && b", "invalid syntax; try and"),
+        ("a || b", "invalid syntax; try or"),
+        ("a == !b", "invalid syntax; try not"),
+        ('a = "b"', "try =="),
+        ("a ? 1 : 2", "try a if c else b"),
+        ("$a > 1", "try keys without a $ inside an expression"),
     ],
 )
 def test_the_gate_refuses_what_is_not_in_the_language(text, message):

@@ -68,7 +68,7 @@ def test_keys_of_a_subtree_are_its_own(inner):
 def test_a_subtree_sees_only_its_ports(bench):
     bench.write("peek", "format: 1\ntree: peek\nroot: {when: secret > 1}\n")
     assert bench.faults("sequence: [{set: {secret: 2}}, {subtree: peek}]") == [
-        "peek: when: nothing in this tree writes 'secret'; (known: none)"
+        "peek: when: nothing in this tree writes 'secret'; known: none"
     ]
 
 

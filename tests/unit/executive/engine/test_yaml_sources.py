@@ -90,3 +90,16 @@ def test_values_survive_writing_and_reading(value):
     if value in ("true", "false", "null"):
         return
     assert read_source("t.yaml", json.dumps(value)).data == value
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("a:\n\tb: 1\n", "t.yaml:2:1: not YAML: a tab in the indentation; expected blanks"),
+        ("a:\n    - b\n   - c\n", "look at the indentation of this line"),
+        ("a: {b: 1\nc: 2\n", "look at brackets, commas and quotes"),
+        ('a: "b\n', "look at the closing quote"),
+    ],
+)
+def test_what_is_not_yaml_says_where_to_look(text, message):
+    assert message in messages(text)[0]
