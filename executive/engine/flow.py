@@ -64,7 +64,7 @@ class _Rounds:
         return _Rounds(self.all + inside, self.must + inside)
 
     def before(self, later: Counter[str]) -> "_Rounds":
-        return _Rounds(self.all, self.must - later)
+        return _Rounds(self.all, self.must - later) if self.must else self
 
     def uncertain(self) -> "_Rounds":
         return _Rounds(self.all, self.all)
@@ -148,8 +148,11 @@ class _Flow:
 
     def _sequence(self, node: NodeSpec, known: Keys, rounds: _Rounds) -> tuple[Keys, Keys]:
         failure = known
-        for i, child in enumerate(node.children):
-            later = sum((self._counts(other) for other in node.children[i + 1 :]), Counter())
+        later: Counter[str] = Counter()
+        for child in node.children:
+            later.update(self._counts(child))
+        for child in node.children:
+            later.subtract(self._counts(child))
             known, failed = self.walk(child, known, rounds.before(later))
             failure |= failed
         return known, failure
