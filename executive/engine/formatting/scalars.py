@@ -1,4 +1,4 @@
-"""How one value is written: plain where that means the same, in double quotes otherwise."""
+"""How one value is written: plain where that means the same, in quotes otherwise."""
 
 import textwrap
 from functools import lru_cache
@@ -35,7 +35,9 @@ def _text(scalar: Scalar, *, in_flow: bool) -> str:
 
 
 def quoted(text: str) -> str:
-    """Return a text in double quotes."""
+    """Return a text in double quotes, in single ones where only double ones are inside."""
+    if '"' in text and "'" not in text and text.isprintable():
+        return f"'{text}'"
     dumped: str = yaml.dump(text, default_style='"', width=float("inf"), allow_unicode=True)
     return dumped.rstrip("\n")
 

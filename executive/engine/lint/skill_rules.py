@@ -5,12 +5,15 @@ from collections.abc import Iterator
 from executive.core.skill import Skill
 from executive.engine.lint.findings import Rule, Spot
 from executive.engine.lint.subject import Subject
+from executive.engine.stubs import ScriptedSkill
 
 
 def _no_stop(subject: Subject) -> Iterator[Spot]:
     for node, _ in subject.nodes():
         skill = subject.outcomes.skill(node)
-        if skill is not None and skill.ACTS and skill.stop is Skill.stop:
+        if skill is None or issubclass(skill, ScriptedSkill):
+            continue  # a script moves nothing
+        if skill.ACTS and skill.stop is Skill.stop:
             message = f"{skill.__name__} moves something, but does not say how it stops"
             yield Spot(node, f"{message}; override stop()")
 

@@ -111,6 +111,8 @@ def test_what_ships_is_in_its_canonical_form():
         ("'[a]'", '"[a]"'),
         (r'"tab\there"', r'"tab\there"'),
         ("'it''s'", "it's"),
+        (r'"\"left\" | \"right\""', '\'"left" | "right"\''),
+        (r"""'"it''s"'""", r'"\"it' + "'" + r's\""'),
         ("'Grüße'", "Grüße"),
         (r'"\U0001F600"', "😀"),
     ],
