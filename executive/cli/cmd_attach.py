@@ -29,6 +29,7 @@ _HELP = """\
   force NODE=success|failure|running [once]         unforce NODE
   stop                      emergency_stop          quit (q): leave, the mission goes on\
 """
+_ASKING_FOR_HELP = ("", "help", "?")
 
 
 def attach(
@@ -48,7 +49,10 @@ def attach(
     show = _print_json if as_json else _print_state
     if do:
         for line in do:
-            show(console, _done(recording, line))
+            if line in _ASKING_FOR_HELP:
+                console.print(_HELP, highlight=False)
+            else:
+                show(console, _done(recording, line))
         return
     console.print(_HELP, style="bright_black", highlight=False)
     show(console, send(recording, "state"))
@@ -63,7 +67,7 @@ def _read(recording: Path, console: Console, show: Callable[[Console, _Arguments
             return
         if line in ("q", "quit"):
             return
-        if line in ("", "help", "?"):
+        if line in _ASKING_FOR_HELP:
             console.print(_HELP, style="bright_black", highlight=False)
             continue
         try:

@@ -251,7 +251,7 @@ def _print_summary(result: _Result) -> None:
         ("because", Text(report.reason)),
         ("claim", Text(_words(report.claim))),
         ("truth", Text(_words(report.truth))),
-        ("took", Text(took)),
+        ("took", Text(took if report.recording else "")),
         *(("slow", Text(_too_slow(node))) for node in result.slow[:_SLOW_SHOWN]),
         *(("raised", Text(line)) for line in result.raised),
         *(("injected", Text(injected_line(one))) for one in result.injected),
@@ -259,9 +259,10 @@ def _print_summary(result: _Result) -> None:
         ("open it", Text(f"cellwright inspect {report.recording}" if report.recording else "")),
     ]
     console = results()
+    width = max(9, len(report.mission)) + 1
     for name, text in lines:
         if text:
-            console.print(Text.assemble((f"{name:<10}", "bright_black"), text), soft_wrap=True)
+            console.print(Text.assemble((f"{name:<{width}}", "bright_black"), text), soft_wrap=True)
 
 
 def _too_slow(node: SlowNode) -> str:

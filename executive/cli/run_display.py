@@ -78,5 +78,6 @@ def _action_line(action: ActionReport) -> Text:
     return Text.assemble(
         f"{action.start_s:8.1f} s  {action.name:<20}",
         (f"{action.status:<8}", STATUS_STYLES[action.status]),
-        f"{action.duration_s:6.1f} s  {action.reason}",
+        f"{action.duration_s:6.1f} s",
+        f"  {action.reason}" if action.reason else "",
     )

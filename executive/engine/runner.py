@@ -304,7 +304,9 @@ class Runner:
             for info in self._tree.nodes
             if info.behaviour.status.name == NodeStatus.RUNNING and not info.behaviour.children
         ]
-        return f"in {', '.join(running)}" if running else "before the first tick"
+        if running:
+            return f"in {', '.join(running)}"
+        return "while no leaf was running" if self._number else "before the first tick"
 
     def _stop_everything(self, raised: tuple[Exception, ...]) -> tuple[Exception, ...]:
         """Stop nodes and cell, and tell the observers; return all that was raised in the run."""

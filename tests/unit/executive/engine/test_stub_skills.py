@@ -146,3 +146,25 @@ def test_a_mission_of_stubs_runs_on_the_dry_cell(tmp_path, monkeypatch):
 def test_the_dry_cell_takes_nothing(given):
     with pytest.raises(InputError, match=f"takes no {given}; got 'arm'"):
         DryCell(**{"config": {}, "scenario": {}, given: {"arm": 1}})
+
+
+def test_a_stub_that_acts_need_not_say_how_it_stops(tmp_path):
+    linted = CliRunner().invoke(app, ["lint", str(write(tmp_path))])
+    assert "L301" not in linted.stdout
+
+
+def test_a_word_that_does_not_fit_is_answered_with_the_closest(tmp_path):
+    sides = with_grasp(**{"in": {"side": {"type": '"left" | "right"'}}})
+    file = write(tmp_path, stubs=sides, root={"skill": "grasp", "in": {"side": "rigth"}})
+    assert "got 'rigth'; did you mean 'right'? (known: left, right)" in faults(file)
+
+
+def test_a_mission_whose_time_is_up_between_two_leaves_says_so(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    slow = with_grasp(outcomes=[{"ticks": 2, "outcome": "success", "out": {"force": 2}}])
+    file = write(tmp_path, stubs=slow, root={"repeat": {"times": 9, "child": GRASP}}, name="t")
+    mission = json.loads(file.read_text()) | {"mission": "t", "cell": "dry", "timeout_s": 0.2}
+    file.write_text(json.dumps({key: value for key, value in mission.items() if key != "tree"}))
+    result = CliRunner().invoke(app, ["run", str(file), "--record", "run"])
+    assert result.exit_code == 1
+    assert "mission timeout of 0.2 s passed while no leaf was running" in result.stdout
