@@ -68,10 +68,12 @@ def _later(found: Retick, run: PastRun) -> Iterator[Text]:
         return
     nodes = [f"{run.names.of_path(path)} {times}" for path, times in found.later_nodes]
     shown = ", ".join(nodes[:_MANY]) + (f" and {len(nodes) - _MANY} more" if nodes[_MANY:] else "")
-    yield Text(
-        f"{found.later_ticks} later ticks differ, {len(nodes)} nodes in them: {shown}",
-        "bright_black",
+    ticks = (
+        "1 later tick differs"
+        if found.later_ticks == 1
+        else f"{found.later_ticks} later ticks differ"
     )
+    yield Text(f"{ticks}; nodes, and in how many of them: {shown}", "bright_black")
 
 
 def _outside(outside: Outside, run: PastRun) -> Text:
