@@ -2,6 +2,8 @@
 
 import json
 import signal
+from collections.abc import Iterator
+from contextlib import contextmanager
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Annotated
@@ -81,9 +83,9 @@ def faults(
     wanted = Wanted(parse_kinds(kinds), at, only)
     _check(mission)
     folder = _folder(plan, out, resume=resume)
-    signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:
-        baseline, runs = _runs(Campaign(plan, folder, Processes(workers, wall_limit)), wanted)
+        with _terminated_like_interrupted():
+            baseline, runs = _runs(Campaign(plan, folder, Processes(workers, wall_limit)), wanted)
     except KeyboardInterrupt:
         chatter().print(f"stopped; go on with --resume --out {folder.folder}")
         raise typer.Exit(MissionOutcome.ABORTED.exit_code) from None
@@ -94,6 +96,16 @@ def faults(
     wrong = any(run.verdict == "wrong" for run in runs)
     low = fail_under is not None and survived_percent(runs) < fail_under
     raise typer.Exit(1 if wrong or low else 0)
+
+
+@contextmanager
+def _terminated_like_interrupted() -> Iterator[None]:
+    """End the runs that are under way when this process is told to end, too."""
+    before = signal.signal(signal.SIGTERM, signal.default_int_handler)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)
 
 
 def _check(mission: str) -> None:
