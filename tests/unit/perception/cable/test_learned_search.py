@@ -1,3 +1,4 @@
+import cv2
 import numpy as np
 import pytest
 
@@ -5,7 +6,7 @@ from perception.cable.tracers.modes import find_modes
 from perception.cable.tracers.paths import Ends, Path, checked, distances, repeats
 from perception.cable.tracers.rivals import RivalConfig, meeting, reduced
 from perception.cable.types import TraceEnd
-from perception.models.frames import ScaledImage, turned_frame
+from perception.models.frames import ScaledImage, cut, scale_image, turned_frame
 from perception.models.tracer_crop import HERE, STEP, WIDTH
 
 NO_ENDS = Ends(np.zeros((0, 2)), np.zeros((0, 2)))
@@ -43,6 +44,26 @@ def test_frames_go_there_and_back():
     assert frame.back(frame.into(points)) == pytest.approx(points)
     assert frame.into(np.array([[40.0, 60.0]]))[0] == pytest.approx(HERE)
     assert frame.into(np.array([[40.6, 60.8]]))[0] == pytest.approx((HERE[0] + 1.0, HERE[1]))
+
+
+def test_a_zoomed_crop_shows_the_same_place():
+    rows, columns = np.mgrid[:80, :90].astype(np.float32)
+    picture = (60.0 + 90.0 * np.sin(0.2 * columns) * np.cos(0.17 * rows)).clip(0, 255)
+    image = picture.astype(np.uint8)
+    frame = turned_frame(np.array([45.0, 40.0]), np.array([0.8, 0.6]), HERE)
+    plain, fine = (cut(scale_image(image, 4.0, 4.0, zoom), frame, 48) for zoom in (1.0, 1.5))
+    assert fine.shape == (72, 72)
+    shrunk = cv2.resize(fine, plain.shape, interpolation=cv2.INTER_AREA)
+    inside = plain[8:40, 8:40]
+    assert np.abs(shrunk[8:40, 8:40] - inside).mean() < 0.05 * float(np.ptp(inside))
+
+
+def test_scaled_points_come_back():
+    scaled = scale_image(np.zeros((60, 90), np.uint8), 7.0, 4.5, 1.5)
+    points = np.array([[0.0, 0.0], [40.0, 25.0]])
+    assert scaled.back(scaled.into(points)) == pytest.approx(points)
+    assert scaled.holds(scaled.into(np.array([89.0, 59.0])))
+    assert not scaled.holds(scaled.into(np.array([95.0, 30.0])))
 
 
 def test_distances_to_a_polyline():

@@ -15,6 +15,15 @@ def test_curves_have_even_steps(family):
     assert steps == pytest.approx(np.full(len(steps), curves.SPACING), rel=0.2)
 
 
+@pytest.mark.parametrize("near", [curves.beside, curves.touching])
+def test_a_curve_beside_another_comes_near_it(near):
+    rng = np.random.default_rng(5)
+    line = curves.settled_curve(rng, 40.0)
+    for _ in range(5):
+        gaps = np.linalg.norm(near(rng, line)[:, None] - line[None], axis=2)
+        assert (gaps.min(axis=1) < 2.0).sum() > 8
+
+
 def test_one_seed_gives_one_scene():
     first, second = (make_scene(np.random.default_rng([7, 3]), SMALL) for _ in range(2))
     assert np.array_equal(first.image, second.image)
