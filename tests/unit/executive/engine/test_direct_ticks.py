@@ -29,6 +29,7 @@ from executive.engine.decorators import Cooldown, Gated, Repeat, Retry, Timeout
 from executive.engine.parallel import Parallel
 from executive.engine.probe import TreeProbe
 from executive.engine.stopping import stop_running
+from executive.engine.supervision import Supervision
 from executive.engine.ticking import NODE_STATUS, DirectTicks
 from executive.engine.ticks import NodeStatus
 
@@ -279,7 +280,8 @@ def probe_of(root):
             visit(child, index)
 
     visit(root, None)
-    return TreeProbe(SimpleNamespace(root=root, nodes=tuple(nodes), blackboard=Blackboard()))
+    parts = {"blackboard": Blackboard(), "supervision": Supervision()}
+    return TreeProbe(SimpleNamespace(root=root, nodes=tuple(nodes), **parts))
 
 
 def looked_at_everywhere(root, nodes, before):
