@@ -54,7 +54,8 @@ def test_one_that_takes_too_long_is_asked_to_end():
 
 def test_none_outlives_an_interrupt(tmp_path):
     pid = tmp_path / "pid"
-    text = f"import os, time; open({str(pid)!r}, 'w', buffering=1).write(f'{{os.getpid()}}\\n'); time.sleep(60)"
+    write = f"open({str(pid)!r}, 'w', buffering=1).write(f'{{os.getpid()}}\\n')"
+    text = f"import os, time; {write}; time.sleep(60)"
     waits = f"import os, time\nwhile not os.path.exists({str(pid)!r}): time.sleep(0.05)"
     processes = Processes(2, LONG_S)
     with pytest.raises(KeyboardInterrupt):
