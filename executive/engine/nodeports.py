@@ -28,7 +28,6 @@ class PortTable:
         """Know the skills, and the trees that could be loaded."""
         self._skills = skills
         self._subtrees = subtrees
-        self._known: dict[str, NodePorts] = {}
 
     def of(self, node: NodeSpec) -> NodePorts | None:
         """Return the ports of a leaf, None where it runs something unknown."""
@@ -42,7 +41,9 @@ class PortTable:
     def _skill(self, name: str) -> NodePorts | None:
         if name not in self._skills:
             return None
-        if name not in self._known:
-            skill = self._skills.get(name)
-            self._known[name] = NodePorts(input_ports(skill), skill.OUT)
-        return self._known[name]
+        return _ports_of(self._skills.get(name))
+
+
+@lru_cache(maxsize=1024)  # resolving annotations is what takes longest in a check
+def _ports_of(skill: type[Skill]) -> NodePorts:
+    return NodePorts(MappingProxyType(input_ports(skill)), skill.OUT)

@@ -90,7 +90,7 @@ def add_packaged_types(registry: Registry[type]) -> Registry[type]:
 
 def _points(group: str) -> Iterator["EntryPoint"]:
     """Yield the entry points of a group, in an order that is the same every time."""
-    if not _declares_any():
+    if not _declares_any(tuple(sys.path)):
         return
     from importlib.metadata import entry_points  # slow to import, and to ask
 
@@ -98,9 +98,10 @@ def _points(group: str) -> Iterator["EntryPoint"]:
     yield from (found[key] for key in sorted(found))
 
 
-def _declares_any() -> bool:
+@cache
+def _declares_any(search_path: tuple[str, ...]) -> bool:
     """Return whether any package mentions us; most have nothing to do with robot cells."""
-    for entry in sys.path:
+    for entry in search_path:
         for file in Path(entry or ".").glob("*-info/entry_points.txt"):
             if b"[cellwright." in file.read_bytes():
                 return True
