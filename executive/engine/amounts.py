@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import Any, Final
 
 from executive.core.errors import InputError
-from executive.engine.document import NodeModel
+from executive.engine.node_models import NodeModel
 from executive.engine.scope import Scope, evaluate
 from executive.engine.values import parse_value
 

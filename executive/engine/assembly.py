@@ -12,38 +12,33 @@ from py_trees.decorators import FailureIsSuccess, Inverter, OneShot, SuccessIsFa
 
 from executive.core.clock import Clock
 from executive.engine.amounts import Amount
-from executive.engine.choosing import IfThenElse, Switch
-from executive.engine.decorators import (
-    Cooldown,
-    ForEach,
-    Guard,
-    Repeat,
-    Retry,
-    Timeout,
-    WhileRunning,
-)
-from executive.engine.document import (
+from executive.engine.block_models import (
     CasesBody,
-    ChanceNode,
     CooldownBody,
-    FailNode,
     ForEachBody,
-    NodeModel,
     ObserveBody,
     ParallelBody,
     RepeatBody,
     RetryBody,
     RunOnceBody,
-    SetNode,
     SwitchBody,
     TimeoutBody,
+)
+from executive.engine.choosing import IfThenElse, Switch
+from executive.engine.decorators import Cooldown, ForEach, Repeat, Retry, Timeout, WhileRunning
+from executive.engine.expression import parse_expression
+from executive.engine.guards import Guard
+from executive.engine.leaves import Chance, Fail, Unset, Wait, WaitFor
+from executive.engine.node_models import (
+    ChanceNode,
+    FailNode,
+    NodeModel,
+    SetNode,
     UnsetNode,
     WaitForNode,
     WaitNode,
     WhenNode,
 )
-from executive.engine.expression import parse_expression
-from executive.engine.leaves import Chance, Fail, Unset, Wait, WaitFor
 from executive.engine.nodes import Assignment, Condition
 from executive.engine.observing import Observe
 from executive.engine.parallel import Parallel

@@ -20,10 +20,10 @@ from executive.engine.assembly import Site, assemble, guard
 from executive.engine.blackboard import Blackboard
 from executive.engine.checkpoints.node import CheckpointGate, CheckpointSignal
 from executive.engine.devices import bind
-from executive.engine.document import SkillNode, SubtreeNode
+from executive.engine.fitting import fit
 from executive.engine.loader import Mission, Program
+from executive.engine.node_models import SkillNode, SubtreeNode
 from executive.engine.outline import NodeSpec, TreeSpec
-from executive.engine.porttypes import fit
 from executive.engine.scope import Scope
 from executive.engine.skill_node import SkillBehaviour
 from executive.engine.supervision import Supervision

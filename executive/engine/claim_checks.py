@@ -7,7 +7,8 @@ from itertools import combinations
 from executive.core.errors import Fault
 from executive.core.registry import Registry
 from executive.core.skill import Skill
-from executive.engine.document import ParallelBody, SkillNode, SubtreeNode
+from executive.engine.block_models import ParallelBody
+from executive.engine.node_models import SkillNode, SubtreeNode
 from executive.engine.outline import NodeSpec, TreeSpec
 
 

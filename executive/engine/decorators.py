@@ -5,69 +5,15 @@ Repeat know no delay, its Timeout reads the machine's clock and ticks the child 
 is late (trap e8), and its ForEach runs the child for an empty list (trap e9).
 """
 
-from collections.abc import Iterator, Mapping
-
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
-from py_trees.decorators import Decorator
 
 from executive.core.clock import Clock
 from executive.core.errors import InputError
-from executive.core.outcome import Outcome, failure
 from executive.engine.amounts import Number, number
-from executive.engine.expression import Expression
-from executive.engine.nodes import answer, assign
+from executive.engine.gated import Gated
 from executive.engine.scope import Scope, evaluate
 from executive.engine.values import Value
-
-_ENDS = {
-    Status.SUCCESS: "on_success",
-    Status.FAILURE: "on_failure",
-    Status.INVALID: "on_halt",
-}
-
-
-class Gated(Decorator):
-    """A decorator that may answer without ticking its child.
-
-    Attributes:
-        status: Answer of the last tick.
-        outcome: Why it answered by itself, None where the child decided.
-    """
-
-    status: Status
-
-    def __init__(self, name: str, child: Behaviour) -> None:
-        """Decorate a child."""
-        super().__init__(name, child)
-        self.outcome: Outcome | None = None
-
-    def before(self) -> Status | None:
-        """Return the answer of this tick, or None to tick the child."""
-        return None
-
-    def tick(self) -> Iterator[Behaviour]:
-        """Ask `before`, and `update` if that left it to the child."""
-        if self.status is not Status.RUNNING:
-            self.outcome = None
-            self.initialise()
-        status = self.before()
-        if status is None:
-            yield from self.decorated.tick()
-            status = self.update()
-        if status is not Status.RUNNING:
-            self.stop(status)
-        self.status = status
-        yield self
-
-    def update(self) -> Status:
-        """Return the answer after the child was ticked."""
-        return self.decorated.status
-
-    def fail(self, code: str, text: str) -> Status:
-        """Answer with a failure of its own."""
-        self.outcome = failure(code, text)
-        return Status.FAILURE
 
 
 class Retry(Gated):
@@ -276,69 +222,3 @@ class ForEach(Gated):
         """Go on to the next item when the child has succeeded."""
         done = self.decorated.status is Status.SUCCESS
         return Status.RUNNING if done and self._left else self.decorated.status
-
-
-class Guard(Gated):
-    """Conditions and assignments around a node: `if`, `unless`, `while`, `on_...`, `finally`."""
-
-    MEMORY = ("_starts",)
-
-    def __init__(
-        self,
-        name: str,
-        path: str,
-        child: Behaviour,
-        *,
-        conditions: Mapping[str, Expression],
-        assignments: Mapping[str, Mapping[str, Expression]],
-        scope: Scope,
-    ) -> None:
-        """Guard a node.
-
-        Args:
-            name: Name of the node.
-            path: Its path, which is the writer of its assignments.
-            child: The node.
-            conditions: Expressions by `if`, `unless`, `while`.
-            assignments: Expressions by key, by `on_start`, `on_success`, ..., `finally`.
-            scope: Names of its tree.
-        """
-        super().__init__(name, child)
-        self._path, self._scope = path, scope
-        self._conditions, self._assignments = conditions, assignments
-        self._starts = False
-
-    def initialise(self) -> None:
-        """Note that the conditions of a start are due."""
-        self._starts = True
-
-    def before(self) -> Status | None:
-        """Ask the conditions; those of a start only once."""
-        starts, self._starts = self._starts, False
-        if starts and not self._holds("if"):
-            return Status.FAILURE
-        if starts and "unless" in self._conditions and self._holds("unless"):
-            self.outcome = None
-            return Status.SUCCESS
-        self.outcome = None
-        if not self._holds("while"):
-            return Status.FAILURE
-        if starts:
-            self._assign("on_start")
-        return None
-
-    def _holds(self, guard: str) -> bool:
-        if guard not in self._conditions:
-            return True
-        self.outcome = answer(self._conditions[guard], self._scope)
-        return self.outcome.reason is None
-
-    def terminate(self, new_status: Status) -> None:
-        """Set the keys that belong to how the node ends."""
-        halted_idle = new_status is Status.INVALID and self.status is not Status.RUNNING
-        if not halted_idle:
-            self._assign(_ENDS[new_status])
-            self._assign("finally")
-
-    def _assign(self, when: str) -> None:
-        assign(self._assignments.get(when, {}), self._scope, self._path)

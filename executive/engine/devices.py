@@ -5,7 +5,8 @@ from collections.abc import Mapping
 
 from executive.core.registry import closest
 from executive.core.skill import Skill, device_types
-from executive.engine.porttypes import check, type_name
+from executive.engine.fitting import check
+from executive.engine.porttypes import type_name
 
 
 def bind(skill: type[Skill], devices: Mapping[str, object]) -> tuple[dict[str, object], list[str]]:

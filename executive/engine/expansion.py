@@ -4,8 +4,9 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from executive.engine.document import BLOCKS, CasesBody, NodeModel, SkillNode, SubtreeNode
+from executive.engine.block_models import BLOCKS, CasesBody
 from executive.engine.loader import Program
+from executive.engine.node_models import NodeModel, SkillNode, SubtreeNode
 from executive.engine.outline import NodeSpec
 
 _ELSEWHERE = {"name", "about", "children", "child", "memory", "cases", "default"}

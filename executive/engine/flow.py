@@ -10,7 +10,7 @@ from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from executive.engine.document import (
+from executive.engine.block_models import (
     CasesBody,
     ForceFailureBody,
     ForceSuccessBody,
@@ -27,10 +27,9 @@ from executive.engine.document import (
     RunningIsSuccessBody,
     SelectorBody,
     SequenceBody,
-    SetNode,
-    UnsetNode,
     WhileDoElseBody,
 )
+from executive.engine.node_models import SetNode, UnsetNode
 from executive.engine.outline import NodeSpec
 from executive.engine.wiring import Use, Wiring
 

@@ -18,7 +18,8 @@ from py_trees.ports import NoDataAvailable, PortInformation, PortsMixin
 
 from executive.core.outcome import Outcome, failure, success
 from executive.core.skill import REQUIRED, Port, Skill, SkillRun
-from executive.engine.porttypes import accepts, check
+from executive.engine.fitting import check
+from executive.engine.porttypes import accepts
 
 FAILED = "behaviour.failed"
 

@@ -12,7 +12,7 @@ from py_trees.common import Status
 
 from executive.core.outcome import Outcome
 from executive.core.outcome import Status as Answer
-from executive.engine.direct import StopCall, TickCall, TickLog
+from executive.engine.calls import StopCall, TickCall, TickLog
 from executive.engine.ticks import NodeStatus
 
 

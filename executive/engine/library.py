@@ -24,9 +24,10 @@ from executive.engine.document import (
     StubsDocument,
     TreeDocument,
 )
+from executive.engine.fitting import fit
 from executive.engine.outline import TreeSpec, outline
 from executive.engine.packages import package_folders, user_folders
-from executive.engine.porttypes import fit, parse_type
+from executive.engine.porttypes import parse_type
 from executive.engine.sources import Source, read_source
 from executive.engine.stubs import stub_skills
 from executive.engine.validation import validate

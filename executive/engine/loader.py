@@ -9,13 +9,9 @@ from executive.core.errors import DocumentError, Fault, InputError
 from executive.core.registry import Registry
 from executive.core.skill import Skill
 from executive.engine.checks import check_tree
-from executive.engine.document import (
-    CellDocument,
-    MissionDocument,
-    StubsDocument,
-    SubtreeNode,
-)
+from executive.engine.document import CellDocument, MissionDocument, StubsDocument
 from executive.engine.library import Library, Shelf, kind_of_document, search_folders
+from executive.engine.node_models import SubtreeNode
 from executive.engine.outline import NodeSpec, TreeSpec
 from executive.engine.sources import Source
 from executive.engine.stubs import Skillset

@@ -7,7 +7,7 @@ from types import MappingProxyType
 
 from executive.core.registry import Registry
 from executive.core.skill import Port, Skill, input_ports
-from executive.engine.document import SkillNode, SubtreeNode
+from executive.engine.node_models import SkillNode, SubtreeNode
 from executive.engine.outline import NodeSpec, TreeSpec
 
 

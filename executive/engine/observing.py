@@ -6,7 +6,7 @@ from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
 from executive.engine.counts import NodeCounts
-from executive.engine.decorators import Gated
+from executive.engine.gated import Gated
 from executive.engine.scope import Scope
 from executive.engine.ticks import NodeStatus
 

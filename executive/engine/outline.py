@@ -10,17 +10,9 @@ from dataclasses import dataclass
 
 from executive.core.errors import Fault
 from executive.core.skill import Port
-from executive.engine.document import (
-    BLOCKS,
-    DOCUMENTS,
-    BlockBody,
-    CasesBody,
-    DecoratorBody,
-    MissionDocument,
-    NodeModel,
-    TreeDocument,
-    kind_of,
-)
+from executive.engine.block_models import BLOCKS, BlockBody, CasesBody, DecoratorBody, kind_of
+from executive.engine.document import DOCUMENTS, MissionDocument, TreeDocument
+from executive.engine.node_models import NodeModel
 from executive.engine.sources import Source, YamlPath
 
 

@@ -1,4 +1,4 @@
-"""Types of ports: their names in YAML, which fits which, and literals made to fit.
+"""Types of ports: their names in YAML, what they are made of, and which may stand for which.
 
 Names are `bool int float str any`, those that the application registers, `list[T]`,
 `dict[str, T]`, `tuple[A, B]`, `"word" | "other"` and `T | None`. A `list[T]` is any ordered
@@ -8,11 +8,9 @@ bool is no number.
 
 import ast
 import collections.abc
-import dataclasses
 import types
 import typing
 from collections.abc import Sequence
-from enum import Enum
 from typing import Any, Literal, Union
 
 from executive.core.errors import InputError
@@ -29,7 +27,6 @@ _BUILT_IN: dict[str, Any] = {
     "NodeCounts": NodeCounts,
     "NodeStatus": NodeStatus,
 }
-_SCALARS = (bool, int, float, str)
 _SEQUENCES = (list, tuple, collections.abc.Sequence)
 _MAPPINGS = (dict, collections.abc.Mapping)
 
@@ -74,13 +71,14 @@ def _type_of(tree: ast.expr, text: str, registered: Registry[type]) -> Any:
 def _either(*kinds: Any) -> Any:
     """Return the union of some types, with one literal type for all words in it."""
     members = [member for kind in kinds for member in union_members(kind) or (kind,)]
-    words = [word for one in members if _is_literal(one) for word in typing.get_args(one)]
-    others = [one for one in members if not _is_literal(one)]
+    words = [word for one in members if is_literal(one) for word in typing.get_args(one)]
+    others = [one for one in members if not is_literal(one)]
     literal = [Literal[tuple(words)]] if words else []
     return Union[(*literal, *others)]
 
 
-def _is_literal(kind: Any) -> bool:
+def is_literal(kind: Any) -> bool:
+    """Return whether a type is some words or values."""
     return typing.get_origin(kind) is Literal
 
 
@@ -102,7 +100,7 @@ def _no_type(text: str) -> str:
 
 def type_name(kind: Any) -> str:
     """Return a type as a message shows it: `list[Knot]`, `float | None`."""
-    kind = _bare(kind)
+    kind = bare(kind)
     if kind is Any:
         return "any"
     if kind is None or kind is type(None):
@@ -110,15 +108,15 @@ def type_name(kind: Any) -> str:
     members = union_members(kind)
     if members:
         return " | ".join(type_name(member) for member in members)
-    if _is_literal(kind):
+    if is_literal(kind):
         return " | ".join(repr(value) for value in typing.get_args(kind))
-    if (items := _fixed_length(kind)) is not None:
+    if (items := fixed_length(kind)) is not None:
         return f"tuple[{', '.join(type_name(item) for item in items)}]"
     if is_mapping(kind):
         return f"dict[{', '.join(type_name(part) for part in mapping_types(kind))}]"
     if is_sequence(kind):
         return f"list[{type_name(item_type(kind))}]"
-    return str(getattr(_class(kind), "__name__", kind))
+    return str(getattr(class_of(kind), "__name__", kind))
 
 
 def literal_type(value: object) -> Any:
@@ -137,12 +135,12 @@ def union_members(kind: Any) -> tuple[Any, ...]:
 
 def is_sequence(kind: Any) -> bool:
     """Return whether a type is an ordered collection other than a string."""
-    return _class(_bare(kind)) in _SEQUENCES
+    return class_of(bare(kind)) in _SEQUENCES
 
 
 def item_type(kind: Any) -> Any:
     """Return the type of the items of an ordered collection."""
-    items = [arg for arg in typing.get_args(_bare(kind)) if arg is not Ellipsis]
+    items = [arg for arg in typing.get_args(bare(kind)) if arg is not Ellipsis]
     if not items:
         return Any
     return items[0] if len(set(items)) == 1 else Union[tuple(items)]  # noqa: UP007 - values
@@ -150,53 +148,54 @@ def item_type(kind: Any) -> Any:
 
 def is_mapping(kind: Any) -> bool:
     """Return whether a type holds values by key."""
-    return _class(_bare(kind)) in _MAPPINGS
+    return class_of(bare(kind)) in _MAPPINGS
 
 
 def mapping_types(kind: Any) -> tuple[Any, Any]:
     """Return the types of the keys and of the values of a mapping."""
-    args = typing.get_args(_bare(kind))
+    args = typing.get_args(bare(kind))
     return (args[0], args[1]) if len(args) == 2 else (Any, Any)
 
 
 def accepts(target: Any, source: Any) -> bool:
     """Return whether every value of type `source` may stand where `target` is asked for."""
-    target, source = _bare(target), _bare(source)
+    target, source = bare(target), bare(source)
     if Any in (target, source) or target == source:
         return True
     if members := union_members(source):
         return all(accepts(target, member) for member in members)
     if members := union_members(target):
         return any(accepts(member, source) for member in members)
-    if _is_literal(target) or _is_literal(source):
+    if is_literal(target) or is_literal(source):
         return _literal_accepts(target, source)
     if is_sequence(target):
         return is_sequence(source) and _sequence_accepts(target, source)
     if is_mapping(target):
         parts = zip(mapping_types(target), mapping_types(source), strict=True)
         return is_mapping(source) and all(accepts(wanted, given) for wanted, given in parts)
-    return _class_accepts(_class(target), _class(source))
+    return _class_accepts(class_of(target), class_of(source))
 
 
 def _literal_accepts(target: Any, source: Any) -> bool:
-    if not _is_literal(source):
+    if not is_literal(source):
         return False
     values = typing.get_args(source)
-    if _is_literal(target):
-        return all(_is_one_of(value, typing.get_args(target)) for value in values)
+    if is_literal(target):
+        return all(is_one_of(value, typing.get_args(target)) for value in values)
     return all(accepts(target, type(value)) for value in values)
 
 
 def _sequence_accepts(target: Any, source: Any) -> bool:
-    wanted, given = _fixed_length(target), _fixed_length(source)
+    wanted, given = fixed_length(target), fixed_length(source)
     if wanted is not None and given is not None:
         return len(wanted) == len(given) and all(map(accepts, wanted, given))
     return accepts(item_type(target), item_type(source))
 
 
-def _fixed_length(kind: Any) -> tuple[Any, ...] | None:
+def fixed_length(kind: Any) -> tuple[Any, ...] | None:
+    """Return the types of the items of a tuple that has as many; None for any other type."""
     args = typing.get_args(kind)
-    is_tuple = _class(kind) is tuple and bool(args)
+    is_tuple = class_of(kind) is tuple and bool(args)
     return args if is_tuple and Ellipsis not in args else None
 
 
@@ -211,152 +210,16 @@ def _class_accepts(target: Any, source: Any) -> bool:
         return True
 
 
-def fit(value: object, kind: Any) -> Any:
-    """Return a literal as a value of a type.
-
-    Enums are found by value, ints become floats, lists tuples or arrays, and mappings
-    dataclasses, field by field.
-
-    Raises:
-        ValueError: It does not fit; the message says `expected ..., got ...`.
-    """
-    return _fit(value, _bare(kind), literal=True)
-
-
-def check(value: object, kind: Any) -> None:
-    """Check that a value at run time has the type that its port declares.
-
-    Raises:
-        ValueError: It has not; the message says `expected ..., got ...`.
-    """
-    if type(value) is not kind:
-        _fit(value, _bare(kind), literal=False)
-
-
-def _fit(value: object, kind: Any, *, literal: bool) -> Any:
-    if kind is Any:
-        return value
-    if kind is None or kind is type(None):
-        return _expect(value is None, value, kind)
-    if members := union_members(kind):
-        return _fit_any(value, members, kind, literal=literal)
-    if _is_literal(kind):
-        return _expect(_is_one_of(value, typing.get_args(kind)), value, kind)
-    if is_sequence(kind):
-        return _fit_sequence(value, kind, literal=literal)
-    if is_mapping(kind):
-        return _fit_mapping(value, kind, literal=literal)
-    return _fit_class(value, _class(kind), literal=literal)
-
-
-def _fit_any(value: object, members: tuple[Any, ...], kind: Any, *, literal: bool) -> Any:
-    for member in members:
-        try:
-            return _fit(value, _bare(member), literal=literal)
-        except ValueError:
-            continue
-    raise _misfit(value, kind)
-
-
-def _fit_sequence(value: object, kind: Any, *, literal: bool) -> Any:
-    if not isinstance(value, (list, tuple)):
-        raise _misfit(value, kind)
-    wanted = _fixed_length(kind)
-    if wanted is None:
-        wanted = (item_type(kind),) * len(value)
-    if len(wanted) != len(value):
-        raise ValueError(f"expected {len(wanted)} items, got {len(value)}")
-    items = [_fit(item, _bare(want), literal=literal) for item, want in zip(value, wanted)]  # noqa: B905
-    if not literal:
-        return value
-    return items if _class(kind) is list else tuple(items)
-
-
-def _fit_mapping(value: object, kind: Any, *, literal: bool) -> Any:
-    if not isinstance(value, collections.abc.Mapping):
-        raise _misfit(value, kind)
-    key, item = map(_bare, mapping_types(kind))
-    fitted = {
-        _fit(name, key, literal=literal): _fit(one, item, literal=literal)
-        for name, one in value.items()
-    }
-    return fitted if literal else value
-
-
-def _is_one_of(value: object, members: tuple[object, ...]) -> bool:
+def is_one_of(value: object, members: tuple[object, ...]) -> bool:
     """Return whether a value is one of a literal type's; `true` is not 1 there."""
     return any(type(value) is type(member) and value == member for member in members)
 
 
-def _fit_class(value: object, kind: Any, *, literal: bool) -> Any:
-    if kind in _SCALARS:
-        return _fit_scalar(value, kind)
-    if isinstance(value, kind):
-        return value
-    if literal and isinstance(kind, type):
-        if issubclass(kind, Enum):
-            return _fit_enum(value, kind)
-        if dataclasses.is_dataclass(kind) and isinstance(value, dict):
-            return _fit_fields(value, kind)
-        if kind.__module__ == "numpy" and isinstance(value, list):
-            return _fit_array(value)
-    raise _misfit(value, kind)
-
-
-def _fit_scalar(value: object, kind: type) -> object:
-    if kind is float and isinstance(value, (int, float)) and not isinstance(value, bool):
-        return float(value)
-    is_number_not_bool = kind is bool or not isinstance(value, bool)
-    return _expect(isinstance(value, kind) and is_number_not_bool, value, kind)
-
-
-def _fit_enum(value: object, kind: type[Enum]) -> Enum:
-    try:
-        return kind(value)
-    except ValueError:
-        known = [str(member.value) for member in kind]
-        raise ValueError(
-            f"{kind.__name__} has no value {value!r}; {closest(str(value), known)}"
-        ) from None
-
-
-def _fit_fields(value: dict[str, object], kind: type) -> object:
-    hints = typing.get_type_hints(kind)
-    fields = {field.name: field for field in dataclasses.fields(kind) if field.init}
-    unknown = [name for name in value if name not in fields]
-    if unknown:
-        raise ValueError(
-            f"{kind.__name__} has no field {unknown[0]!r}; {closest(unknown[0], [*fields])}"
-        )
-    try:
-        return kind(**{name: fit(item, hints[name]) for name, item in value.items()})
-    except TypeError as error:
-        raise ValueError(f"expected {kind.__name__}: {error}") from None
-
-
-def _fit_array(value: list[object]) -> object:
-    import numpy as np
-
-    try:
-        return np.asarray(value, dtype=np.float64)
-    except (TypeError, ValueError):
-        raise ValueError(f"expected an array of numbers, got {value!r}") from None
-
-
-def _expect(fits: bool, value: object, kind: Any) -> object:
-    if not fits:
-        raise _misfit(value, kind)
-    return value
-
-
-def _misfit(value: object, kind: Any) -> ValueError:
-    shown = repr(value) if isinstance(value, (*_SCALARS, type(None))) else type(value).__name__
-    return ValueError(f"expected {type_name(kind)}, got {shown}")
-
-
-def _bare(kind: Any) -> Any:
+def bare(kind: Any) -> Any:
+    """Return a type without what `Annotated` adds."""
     return typing.get_args(kind)[0] if typing.get_origin(kind) is typing.Annotated else kind
 
 
-def _class(kind: Any) -> Any:
+def class_of(kind: Any) -> Any:
+    """Return the class of a type, whatever its items are."""
     return typing.get_origin(kind) or kind

@@ -15,8 +15,8 @@ from py_trees.common import Status as TreeStatus
 from executive.core.errors import NodeError
 from executive.core.outcome import Outcome, Reason
 from executive.engine.builder import BuiltTree
+from executive.engine.calls import Event
 from executive.engine.checkpoints.past import Past
-from executive.engine.direct import Event
 from executive.engine.interception import Interceptor, chained
 from executive.engine.raising import failing
 from executive.engine.ticking import NODE_STATUS, DirectTicks

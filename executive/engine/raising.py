@@ -10,8 +10,8 @@ from py_trees.common import Status
 from py_trees.decorators import Decorator
 
 from executive.core.outcome import failure
+from executive.engine.calls import TickCall
 from executive.engine.checkpoints.node import CheckpointGate
-from executive.engine.direct import TickCall
 from executive.engine.interception import Interceptor, Junction
 from executive.engine.nodes import Leaf
 from executive.engine.supervision import RAISED, Supervision

@@ -7,7 +7,7 @@ from py_trees.common import Status
 
 from executive.core.outcome import RUNNING, Outcome
 from executive.core.skill import PausePolicy, Port, Skill
-from executive.engine import porttypes
+from executive.engine import fitting
 from executive.engine.nodes import Leaf
 from executive.engine.scope import Inputs, Scope
 from executive.engine.supervision import Supervision
@@ -158,7 +158,7 @@ class SkillBehaviour(Leaf):
     def _check(self, outputs: Mapping[str, object]) -> None:
         for port, value in outputs.items():
             try:
-                porttypes.check(value, self._types[port])
+                fitting.check(value, self._types[port])
             except ValueError as error:
                 raise TypeError(f"output {port!r}: {error}") from None
 

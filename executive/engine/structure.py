@@ -6,14 +6,8 @@ from collections.abc import Iterator
 from executive.core.errors import Fault
 from executive.core.registry import Registry, closest
 from executive.core.skill import Skill
-from executive.engine.document import (
-    BlockBody,
-    CasesBody,
-    ObserveBody,
-    ParallelBody,
-    SkillNode,
-    UnsetNode,
-)
+from executive.engine.block_models import BlockBody, CasesBody, ObserveBody, ParallelBody
+from executive.engine.node_models import SkillNode, UnsetNode
 from executive.engine.outline import NodeSpec, TreeSpec
 
 

@@ -16,8 +16,9 @@ from executive.core.outcome import failure, success
 from executive.core.registry import Registry, closest
 from executive.core.skill import REQUIRED, In, Port, Skill, SkillRun
 from executive.engine.document import InPort, OutPort, StubOutcome, StubsDocument, StubSkill
+from executive.engine.fitting import fit
 from executive.engine.outline import TreeSpec
-from executive.engine.porttypes import fit, parse_type
+from executive.engine.porttypes import parse_type
 from executive.engine.sources import Source
 
 FAILED = "stub.failed"

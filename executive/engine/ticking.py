@@ -16,10 +16,11 @@ from py_trees.composites import Composite, Selector
 from py_trees.composites import Sequence as SequenceNode
 from py_trees.decorators import Decorator, OneShot
 
-from executive.engine import direct
+from executive.engine import stop_calls, tick_calls
+from executive.engine.calls import Spot, StopCall, TickCall, TickLog
 from executive.engine.choosing import Chooser
-from executive.engine.decorators import Gated, WhileRunning
-from executive.engine.direct import Spot, StopCall, TickCall, TickLog
+from executive.engine.decorators import WhileRunning
+from executive.engine.gated import Gated
 from executive.engine.interception import Interceptor, Junction
 from executive.engine.parallel import Parallel
 from executive.engine.ticks import NodeStatus
@@ -27,22 +28,22 @@ from executive.engine.ticks import NodeStatus
 NODE_STATUS = {status: NodeStatus(status.value) for status in Status}
 
 _TICKS: Mapping[object, Callable[[Spot], TickCall]] = {
-    Behaviour.tick: direct.tick_of_leaf,
-    Decorator.tick: direct.tick_of_decorator,
-    OneShot.tick: direct.tick_of_one_shot,
-    Gated.tick: direct.tick_of_gated,
-    SequenceNode.tick: direct.tick_of_sequence,
-    Selector.tick: direct.tick_of_selector,
-    Parallel.tick: direct.tick_of_parallel,
-    Chooser.tick: direct.tick_of_chooser,
+    Behaviour.tick: tick_calls.tick_of_leaf,
+    Decorator.tick: tick_calls.tick_of_decorator,
+    OneShot.tick: tick_calls.tick_of_one_shot,
+    Gated.tick: tick_calls.tick_of_gated,
+    SequenceNode.tick: tick_calls.tick_of_sequence,
+    Selector.tick: tick_calls.tick_of_selector,
+    Parallel.tick: tick_calls.tick_of_parallel,
+    Chooser.tick: tick_calls.tick_of_chooser,
 }
 _STOPS: Mapping[object, Callable[[Spot], StopCall]] = {
-    Behaviour.stop: direct.stop_of_leaf,
-    Decorator.stop: direct.stop_of_decorator,
-    Composite.stop: direct.stop_of_composite,
-    SequenceNode.stop: direct.stop_of_composite,
-    Selector.stop: direct.stop_of_composite,
-    WhileRunning.stop: direct.stop_of_while_running,
+    Behaviour.stop: stop_calls.stop_of_leaf,
+    Decorator.stop: stop_calls.stop_of_decorator,
+    Composite.stop: stop_calls.stop_of_composite,
+    SequenceNode.stop: stop_calls.stop_of_composite,
+    Selector.stop: stop_calls.stop_of_composite,
+    WhileRunning.stop: stop_calls.stop_of_while_running,
 }
 
 

@@ -9,18 +9,10 @@ from pydantic import ValidationError
 
 from executive.core.errors import Fault
 from executive.core.registry import closest
-from executive.engine.document import (
-    BLOCKS,
-    DOCUMENTS,
-    KINDS,
-    LEAVES,
-    Document,
-    InPort,
-    Model,
-    NodeModel,
-    OutPort,
-    kind_of,
-)
+from executive.engine.block_models import BLOCKS, KINDS, LEAVES, kind_of
+from executive.engine.document import DOCUMENTS, Document, InPort, OutPort
+from executive.engine.fields import Model
+from executive.engine.node_models import NodeModel
 from executive.engine.outline import node_paths, value_at
 from executive.engine.sources import Source, YamlPath
 

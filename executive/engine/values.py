@@ -9,7 +9,7 @@ from typing import Any
 
 from executive.core.errors import InputError
 from executive.engine.expression import Expression, parse_expression
-from executive.engine.porttypes import fit
+from executive.engine.fitting import fit
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,12 +9,13 @@ from executive.core.errors import Fault, InputError
 from executive.core.registry import closest
 from executive.core.skill import Port
 from executive.engine.amounts import FOREVER, Limits, amounts_of
+from executive.engine.block_models import CasesBody, ForEachBody, ObserveBody
 from executive.engine.counts import NodeCounts
-from executive.engine.document import (
-    CasesBody,
-    ForEachBody,
+from executive.engine.evaluation import WRITTEN
+from executive.engine.expression import Expression, parse_expression
+from executive.engine.fitting import fit
+from executive.engine.node_models import (
     NodeModel,
-    ObserveBody,
     SetNode,
     SkillNode,
     SubtreeNode,
@@ -22,11 +23,8 @@ from executive.engine.document import (
     WaitForNode,
     WhenNode,
 )
-from executive.engine.evaluation import WRITTEN
-from executive.engine.expression import Expression, parse_expression
 from executive.engine.nodeports import PortTable
 from executive.engine.outline import NodeSpec
-from executive.engine.porttypes import fit
 from executive.engine.ticks import NodeStatus
 from executive.engine.values import Literal, Value, key_of, parse_value
 

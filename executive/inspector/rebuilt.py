@@ -9,16 +9,10 @@ from dataclasses import dataclass
 from executive.core.errors import InputError
 from executive.core.skill import REQUIRED
 from executive.engine.blackboard import Blackboard
-from executive.engine.document import (
-    ForEachBody,
-    MissionDocument,
-    SetNode,
-    SkillNode,
-    SubtreeNode,
-    TreeDocument,
-    WhenNode,
-)
+from executive.engine.block_models import ForEachBody
+from executive.engine.document import MissionDocument, TreeDocument
 from executive.engine.expression import Expression, parse_expression
+from executive.engine.node_models import SetNode, SkillNode, SubtreeNode, WhenNode
 from executive.engine.outline import NodeSpec, outline
 from executive.engine.recording.messages import MissionHeader
 from executive.engine.scope import Scope

@@ -7,7 +7,7 @@ import pytest
 from typer.testing import CliRunner
 
 from executive.cli.main import app
-from executive.engine.document import KINDS
+from executive.engine.block_models import KINDS
 from executive.engine.exchange.vocabulary import CONDITIONS, ENDINGS, PORTS, REFUSED
 
 PAGE = (Path(__file__).parents[2] / "docs" / "exchange.md").read_text(encoding="utf-8")

@@ -20,11 +20,11 @@ from executive.core.outcome import Status as Answer
 from executive.core.registry import closest
 from executive.core.world import StreamMessage
 from executive.engine.builder import BuiltTree
+from executive.engine.calls import TickCall
 from executive.engine.control import EmergencyStopped, RunControl
 from executive.engine.debugging.breakpoints import Breakpoint, Event, parse_breakpoint
 from executive.engine.debugging.names import BoardNames
 from executive.engine.debugging.stepping import Step, Stride, stride
-from executive.engine.direct import TickCall
 from executive.engine.expression import Expression
 from executive.engine.interception import Junction
 from executive.engine.interventions import InterventionLog

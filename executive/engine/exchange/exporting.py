@@ -7,21 +7,14 @@ from typing import Any, Final
 
 from executive.core.errors import DocumentError, Fault, InputError
 from executive.core.skill import Port, Skill, input_ports
-from executive.engine.document import (
+from executive.engine.block_models import (
     ForEachBody,
-    NodeModel,
     ParallelBody,
     ReactiveSwitchBody,
     RepeatBody,
     RetryBody,
     RunOnceBody,
-    SetNode,
-    SkillNode,
-    SubtreeNode,
     TimeoutBody,
-    UnsetNode,
-    WaitNode,
-    WhenNode,
 )
 from executive.engine.exchange.cpptypes import cpp_type, read_literal, write_literal
 from executive.engine.exchange.dataflow import key_in
@@ -29,6 +22,15 @@ from executive.engine.exchange.scripting import write_assignments, write_conditi
 from executive.engine.exchange.vocabulary import COUNTERPARTS, LOOPS, SWITCHES
 from executive.engine.exchange.xmltext import NOT_XML, XmlElement, printable
 from executive.engine.loader import Program
+from executive.engine.node_models import (
+    NodeModel,
+    SetNode,
+    SkillNode,
+    SubtreeNode,
+    UnsetNode,
+    WaitNode,
+    WhenNode,
+)
 from executive.engine.outline import NodeSpec, TreeSpec
 from executive.engine.porttypes import type_name
 from executive.engine.stubs import ScriptedSkill

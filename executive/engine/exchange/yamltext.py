@@ -5,7 +5,7 @@ import textwrap
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Final
 
-from executive.engine.document import BLOCKS, DecoratorBody
+from executive.engine.block_models import BLOCKS, DecoratorBody
 from executive.engine.exchange.draft import Draft
 
 WIDTH: Final = 100

@@ -16,7 +16,7 @@ from executive.core.outcome import Status as Answer
 from executive.core.world import StreamMessage
 from executive.engine.blackboard import Write
 from executive.engine.builder import BuiltTree
-from executive.engine.direct import TickCall
+from executive.engine.calls import TickCall
 from executive.engine.faults.armed import Armed
 from executive.engine.faults.grammar import Injection, Kind
 from executive.engine.faults.key_types import (

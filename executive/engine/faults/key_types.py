@@ -8,10 +8,11 @@ from typing import Any
 
 from executive.core.errors import Fault, InputError
 from executive.core.registry import closest
+from executive.engine.fitting import check, fit
 from executive.engine.keys import KeyTable
 from executive.engine.loader import Program
 from executive.engine.nodeports import PortTable
-from executive.engine.porttypes import accepts, check, fit, type_name
+from executive.engine.porttypes import accepts, type_name
 from executive.engine.wiring import wire
 
 

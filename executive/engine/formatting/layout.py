@@ -34,7 +34,7 @@ class Layout:
         return written
 
     def _lift_first(self, entry: Entry, path: YamlPath) -> None:
-        """Put what stands above the first key of an item above the item: there is no line between."""
+        """Put what stands above the first key of an item above the item: no line is between."""
         if isinstance(entry.value, Collection) and entry.value.entries:
             index, first = self._ordered(entry.value, path)[0]
             if first.key is None:

@@ -4,7 +4,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final
 
-from executive.engine.document import BLOCKS, DOCUMENTS, LEAVES, NodeModel, kind_of
+from executive.engine.block_models import BLOCKS, LEAVES, kind_of
+from executive.engine.document import DOCUMENTS
+from executive.engine.node_models import NodeModel
 from executive.engine.outline import node_paths, value_at
 from executive.engine.sources import YamlPath
 

@@ -7,7 +7,8 @@ from collections.abc import Callable, Iterable, Mapping
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Final
 
-from executive.engine.document import ObserveBody, ParallelBody, SubtreeNode
+from executive.engine.block_models import ObserveBody, ParallelBody
+from executive.engine.node_models import SubtreeNode
 from executive.engine.outline import NodeSpec
 
 if TYPE_CHECKING:

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import pairwise
 
-from executive.engine.document import ParallelBody, TimeoutBody
+from executive.engine.block_models import ParallelBody, TimeoutBody
 from executive.engine.lint.outcomes import number, traits
 from executive.engine.lint.subject import Ancestors, Subject
 from executive.engine.outline import NodeSpec

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from executive.engine.document import CooldownBody, RetryBody, TimeoutBody
+from executive.engine.block_models import CooldownBody, RetryBody, TimeoutBody
 from executive.engine.lint.findings import Rule, Spot
 from executive.engine.lint.outcomes import number, traits
 from executive.engine.lint.subject import Subject

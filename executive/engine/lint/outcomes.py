@@ -13,16 +13,9 @@ from typing import Any, Final
 from executive.core.errors import InputError
 from executive.core.registry import Registry
 from executive.core.skill import Skill
-from executive.engine.document import (
-    CasesBody,
-    ChanceNode,
-    ForEachBody,
-    NodeModel,
-    ParallelBody,
-    RetryBody,
-    WhenNode,
-)
+from executive.engine.block_models import CasesBody, ForEachBody, ParallelBody, RetryBody
 from executive.engine.expression import parse_expression
+from executive.engine.node_models import ChanceNode, NodeModel, WhenNode
 from executive.engine.outline import NodeSpec, TreeSpec
 
 

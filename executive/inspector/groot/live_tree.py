@@ -11,7 +11,7 @@ from typing import Final
 
 from executive.core.errors import InputError
 from executive.engine.blackboard import Blackboard
-from executive.engine.document import BLOCKS, DecoratorBody
+from executive.engine.block_models import BLOCKS, DecoratorBody
 from executive.engine.exchange.vocabulary import COUNTERPARTS
 from executive.engine.exchange.xmltext import XmlElement, printable
 from executive.engine.recording.messages import MissionHeader, RecordedNode

@@ -4,17 +4,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Final
 
-from executive.engine.document import (
-    NodeModel,
-    ParallelBody,
-    RepeatBody,
-    RetryBody,
-    SetNode,
-    SkillNode,
-    TimeoutBody,
-    WhenNode,
-)
+from executive.engine.block_models import ParallelBody, RepeatBody, RetryBody, TimeoutBody
 from executive.engine.exchange.xmltext import printable
+from executive.engine.node_models import NodeModel, SetNode, SkillNode, WhenNode
 from executive.engine.values import key_of, parse_value
 from executive.inspector.rebuilt import WrittenNode
 

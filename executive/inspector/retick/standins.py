@@ -12,7 +12,7 @@ from executive.core.outcome import RUNNING, Outcome, failure, success
 from executive.core.outcome import Status as Answer
 from executive.engine.blackboard import Write
 from executive.engine.builder import BuiltTree
-from executive.engine.direct import TickCall
+from executive.engine.calls import TickCall
 from executive.engine.interception import Junction
 from executive.engine.skill_node import SkillBehaviour
 from executive.engine.ticks import NodeStatus

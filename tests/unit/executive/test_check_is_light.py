@@ -19,7 +19,7 @@ try:
     main()
 except SystemExit:
     pass
-from executive.engine.document import BLOCKS, LEAVES
+from executive.engine.block_models import BLOCKS, LEAVES
 built = [kind for kind, model in {**LEAVES, **BLOCKS}.items() if model.__pydantic_complete__]
 print(json.dumps([sorted(sys.modules), built]), file=sys.stderr)
 """

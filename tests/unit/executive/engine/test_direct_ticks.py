@@ -25,7 +25,8 @@ from py_trees.decorators import Retry as ForeignRetry
 from executive.core.clock import ManualClock
 from executive.engine.blackboard import Blackboard
 from executive.engine.choosing import IfThenElse
-from executive.engine.decorators import Cooldown, Gated, Repeat, Retry, Timeout
+from executive.engine.decorators import Cooldown, Repeat, Retry, Timeout
+from executive.engine.gated import Gated
 from executive.engine.parallel import Parallel
 from executive.engine.probe import TreeProbe
 from executive.engine.stopping import stop_running

@@ -10,7 +10,7 @@ from toy_language import toy_skills, toy_types
 from benchmarks.fuzz import Bench
 from benchmarks.random_documents import ANYTHING, INNER, ROOTS, WORDS, document, spoiled
 from executive.core.errors import InputError
-from executive.engine.document import KINDS
+from executive.engine.block_models import KINDS
 from executive.engine.loader import load_program
 
 

@@ -6,9 +6,9 @@ import pytest
 from killed_toys import WorldCell, skills, types, write_mission
 from py_trees.behaviour import Behaviour
 
+from executive.engine.block_models import BLOCKS, LEAVES
 from executive.engine.builder import build
 from executive.engine.checkpoints.memories import Child, memory_of, recall
-from executive.engine.document import BLOCKS, LEAVES
 from executive.engine.loader import load_mission
 
 # The kinds that remember something only while they run are caught in the middle of it.

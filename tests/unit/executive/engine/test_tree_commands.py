@@ -8,7 +8,7 @@ from toy_language import toy_skills
 from typer.testing import CliRunner
 
 from executive.cli.main import app
-from executive.engine.document import KINDS
+from executive.engine.block_models import KINDS
 from executive.engine.library import packaged_trees
 from executive.engine.schema import SCHEMA_FILE, schema_text
 
