@@ -2,6 +2,7 @@
 
 from typing import Annotated
 
+from executive.core.outcome import failure
 from executive.core.skill import In, SkillRun
 from perception.cable.covered_ends import connector_px, crossed_ends
 from perception.cable.types import Endpoint, Trace
@@ -19,23 +20,31 @@ class PerturbEndpoint(ShiftSkill):
     in a trace.
 
     SUCCESS: the cable was held, moved and laid down.
-    FAILURE: `grasp.unreachable` when no arm reaches any end; `grasp.missed` when the
-        fingers closed on nothing; a motion reason.
+    FAILURE: `ends.clear` when only covered ends were asked for and there is none;
+        `grasp.unreachable` when no arm reaches any end; `grasp.missed` when the fingers closed
+        on nothing; a motion reason.
     stop(): arms come to rest; a held cable stays held.
     """
+
+    REASONS = ShiftSkill.REASONS | {"ends.clear"}
 
     def run(
         self,
         frame: Annotated[CameraFrame, In("overhead frame")],
         endpoints: Annotated[tuple[Endpoint, ...], In("ends of the cable, surest first")],
         trace: Annotated[Trace | None, In("path of the cable, where it is known")] = None,
+        only_covered: Annotated[bool, In("leave ends alone that nothing lies across")] = False,
     ) -> SkillRun:
         """Hold behind an end and shift it."""
         crossed = (False,) * len(endpoints) if trace is None else crossed_ends(trace, endpoints)
+        if only_covered and not any(crossed):
+            return failure("ends.clear", "no strand lies across a connector")
         order = sorted(range(len(endpoints)), key=lambda number: not crossed[number])
         holds = [
             Hold(end.position_px + behind * end.direction, end.direction, connector_px(end))
-            for end in (endpoints[number] for number in order)
+            for end in (
+                endpoints[number] for number in order if crossed[number] or not only_covered
+            )
             for behind in HOLD_BEHIND_PX
         ]
         return (yield from self.shift(frame, holds))
