@@ -77,7 +77,7 @@ def test_documents_in_pages_are_sound(tmp_path):
     ]
     assert blocks
     for block in blocks:
-        name = re.search(r"^(?:tree|mission|cell): (\w+)$", block, re.MULTILINE)[1]
+        name = re.search(r"^(?:tree|mission|cell|stubs): (\w+)$", block, re.MULTILINE)[1]
         (tmp_path / f"{name}.yaml").write_text(block, encoding="utf-8")
     checked = subprocess.run(
         [CELLWRIGHT, "check", *tmp_path.iterdir()], capture_output=True, text=True, check=False
