@@ -134,7 +134,7 @@ def _runs(campaign: Campaign, wanted: Wanted) -> tuple[PastRun, list[FaultRun]]:
     with console.status("running without a fault"):
         baseline = campaign.baseline()
     tried, names = variants(seen_in(baseline.index), wanted), _names(baseline)
-    done = sum(one.fault in campaign.folder.results() for one in tried)
+    done = sum(one.fault in campaign.folder.finished() for one in tried)
     for place, run in enumerate(campaign.runs(tried, baseline), start=done + 1):
         print_progress(console, run, place, len(tried), names)
     found = campaign.folder.results()

@@ -68,7 +68,7 @@ class Campaign:
         result = baseline.recording.result
         assert result is not None
         usual = result.report.outcome
-        done = self.folder.results()
+        done = self.folder.finished()
         left = [one for one in tried if one.fault not in done]
         for one in (one for one in left if not one.reached):
             yield self._kept(FaultRun(fault=one.fault, verdict="not reached", outcome=usual))

@@ -112,6 +112,11 @@ class CampaignFolder:
             found[run.fault] = run
         return found
 
+    def finished(self) -> dict[str, FaultRun]:
+        """Return the results that need not be had again: those of runs that came to an end."""
+        broken = ("died", "overdue")
+        return {fault: run for fault, run in self.results().items() if run.outcome not in broken}
+
     def _end_last_line(self) -> None:
         """End a line that was cut off by a kill, so that the next result has its own."""
         file = self.folder / RESULTS

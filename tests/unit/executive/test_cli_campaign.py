@@ -14,7 +14,7 @@ from typer.testing import CliRunner
 
 from executive.cli.main import app
 from executive.core.errors import InputError
-from executive.engine.faults.store import PLAN, RESULTS, CampaignFolder, CampaignPlan
+from executive.engine.faults.store import PLAN, RESULTS, CampaignFolder, CampaignPlan, FaultRun
 from executive.engine.recording.reader import Recording
 
 LIMIT_S = 60.0
@@ -167,3 +167,14 @@ def test_results_that_were_cut_off_are_left_out(tmp_path):
     (tmp_path / "camp" / RESULTS).write_text('{"fault": "a: fail@1", "verd')
     folder.resume(plan)
     assert folder.results() == {}
+
+
+def test_a_run_that_died_is_tried_again(tmp_path):
+    folder = CampaignFolder(tmp_path / "camp")
+    folder.begin(CampaignPlan(mission="m", seed=0, timeout_s=None, assignments=()))
+    died = FaultRun(fault="a: fail@1", verdict="wrong", outcome="died")
+    folder.add(died)
+    assert (folder.results(), folder.finished()) == ({died.fault: died}, {})
+    ended = FaultRun(fault="a: fail@1", verdict="ended", outcome="failure")
+    folder.add(ended)
+    assert folder.results() == folder.finished() == {died.fault: ended}
