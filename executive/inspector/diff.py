@@ -10,6 +10,8 @@ from typing import TypeVar
 from executive.inspector.past import PastRun
 from executive.inspector.run_events import Ended, RunEvents, Wrote
 
+NOT_AGAIN = "did not run again"
+
 T = TypeVar("T")
 
 
@@ -146,9 +148,10 @@ def _outcomes(a: RunEvents, b: RunEvents) -> Iterator[Divergence]:
             continue
         at_a, at_b = _at(in_a, same), _at(in_b, same)
         rank = min(event.rank for event in (at_a, at_b) if event is not None)
-        detail = f"{_said(at_a)} in A, {_said(at_b)} in B"
+        place_a = _ended_place(a, at_a) if at_a else _no_place(a, path)
+        place_b = _ended_place(b, at_b) if at_b else _no_place(b, path)
+        detail = f"{place_a.what} in A, {place_b.what} in B"
         inputs = tuple(_differing_inputs(a, b, path, at_a, at_b))
-        place_a, place_b = _ended_place(a, at_a), _ended_place(b, at_b)
         yield Divergence(DiffKind.OUTCOME, path, place_a, place_b, detail, rank, inputs)
 
 
@@ -156,16 +159,22 @@ def _at(events: Sequence[T], place: int) -> T | None:
     return events[place] if place < len(events) else None
 
 
-def _said(ended: Ended | None) -> str:
-    if ended is None:
-        return "did not run again"
+def _said(ended: Ended) -> str:
     status, code = ended.outcome
     return f"{status} ({code}{f': {ended.text}' if ended.text else ''})" if code else status
 
 
-def _ended_place(events: RunEvents, ended: Ended | None) -> Place:
-    if ended is None:
-        return Place(None, None, "did not run again")
+def _no_place(events: RunEvents, path: str) -> Place:
+    """Return what a node did in a run that has no further outcome of it."""
+    index, ended = events.run.index, events.outcomes.get(path, [])
+    node = index.indices.get(path)
+    lives = [] if node is None else index.activations(node)
+    # An answer that is given again in tick after tick has been given once.
+    again = bool(ended) and any(life.start > ended[-1].tick for life in lives)
+    return Place(None, None, "answered the same ever after" if again else NOT_AGAIN)
+
+
+def _ended_place(events: RunEvents, ended: Ended) -> Place:
     return Place(ended.tick, float(events.run.index.times_s[ended.tick]), _said(ended))
 
 

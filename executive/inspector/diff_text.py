@@ -5,7 +5,7 @@ from pathlib import PurePath
 
 from rich.text import Text
 
-from executive.inspector.diff import Consequence, DiffKind, Divergence, RunDiff
+from executive.inspector.diff import NOT_AGAIN, Consequence, DiffKind, Divergence, RunDiff
 from executive.inspector.past import PastRun
 
 _MANY = 12
@@ -52,6 +52,8 @@ def _detail(found: Divergence, run: PastRun) -> Iterator[Text]:
     node = run.index.indices.get(found.name)
     if found.kind is DiffKind.VALUE:
         yield Text(f"  {found.a.what} in A, {found.b.what} in B")
+    elif found.kind is DiffKind.OUTCOME and NOT_AGAIN in (found.a.what, found.b.what):
+        yield Text("  one run did not come to it: what was decided before made the difference")
     elif found.kind is DiffKind.OUTCOME and found.inputs:
         names = ", ".join(key.rpartition(":")[2] for key in found.inputs)
         yield Text(f"  it had read other values: {names}")

@@ -88,6 +88,8 @@ def end_with_cause(run: PastRun, end: Activation) -> str:
     """Return `expose failed @26 (leaves_view: ...)`: how a node ended, and who decided that."""
     name = run.names.short(end.node)
     text = f"{name} {_ENDED[end.status]} @{end.end}"
+    if end.status is NodeStatus.SUCCESS:
+        return f"{text}{_left_out(run, end)}"
     if end.status is not NodeStatus.FAILURE:
         return text
     leaf, tick = deciding_leaves(run.index, end.node, end.end)[-1]
@@ -95,6 +97,17 @@ def end_with_cause(run: PastRun, end: Activation) -> str:
     who = "" if leaf == end.node else run.names.short(leaf)
     because = ": ".join(part for part in (who, why) if part)
     return f"{text} ({because})" if because else text
+
+
+def _left_out(run: PastRun, end: Activation) -> str:
+    """Return ` without look (unless ... was true; ...)` for a guard that decided by itself."""
+    if run.index.nodes[end.node].kind != "guard":
+        return ""
+    (child,) = run.index.children[end.node]
+    if any(end.start <= life.start <= end.end for life in run.index.activations(child)):
+        return ""
+    asked = "; ".join(shown(condition) for condition in run.conditions(end.node, end.end))
+    return f" without {run.names.short(child)}{f' ({asked})' if asked else ''}"
 
 
 def why_asked(run: PastRun, parent: int, child: int, tick: int) -> str:

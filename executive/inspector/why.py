@@ -106,7 +106,8 @@ def _outcome(run: PastRun, node: int, tick: int, below: list[Decision]) -> str:
 
 
 def _count(run: PastRun, node: int, tick: int) -> str:
-    if run.index.nodes[node].kind != "retry":
+    kind = run.index.nodes[node].kind
+    if kind not in ("retry", "repeat", "for_each"):
         return ""
     (child,) = run.index.children[node]
-    return f" ({why_asked(run, node, child, tick).removeprefix('retry: ')})"
+    return f" ({why_asked(run, node, child, tick).removeprefix(f'{kind}: ')})"

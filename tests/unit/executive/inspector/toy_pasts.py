@@ -76,19 +76,21 @@ def act(name, **wires):
 
 
 def past(
-    folder, root, letters, ports="", *, name="a", seed=0, timeout_s=60.0, inputs=None, mission="t"
-):
+    folder, root, letters, ports="", *, name="a", seed=0, timeout_s=60.0, inputs=None, mission="t",
+    skills=None, devices=None,
+):  # fmt: skip
     """Run a tree of which only the root is given; return the recorded run.
 
-    Every tick takes 2 ms of the machine's clock, so that equal runs have equal recordings.
+    Leaves do what the letters say, or run other skills with devices of their own. Every tick
+    takes 2 ms of the machine's clock, so that equal runs have equal recordings.
     """
     folder = Path(folder)
     body = indent(dedent(root).strip(), "  ")
     file = folder / f"{mission}.yaml"
     file.write_text(f"format: 1\ntree: {mission}\n{dedent(ports).strip()}\nroot:\n{body}\n")
-    program = load_program(file, skills=acting(), types=Registry("port type"))
+    program = load_program(file, skills=skills or acting(), types=Registry("port type"))
     clock = ManualClock()
-    devices = {"script": Script(letters)}
+    devices = devices or {"script": Script(letters)}
     tree = build(program, devices=devices, clock=clock, inputs=inputs or {})
     header = MissionHeader(
         format=1,
