@@ -88,7 +88,8 @@ class Comparison:
         tick, recorded = repeated.tick, repeated.recorded
         for node, status in tick.changes:
             self._statuses[node] = _CODES[status]
-        writes = tuple(self._writes(tick, recorded))
+        # What a tick that broke off would have written is not known.
+        writes = () if repeated.outside else tuple(self._writes(tick, recorded))
         if self._exact and not writes and _decides_as(tick, recorded):
             return None
         nodes = tuple(self._nodes(repeated))
