@@ -44,16 +44,16 @@ function draw() {
   const identity = JSON.stringify([state, store.node]);
   if (!state || identity === drawn) return;
   drawn = identity;
-  const name = store.run.nodes[store.node].path;
+  const { path, name } = store.run.nodes[store.node];
   panel.replaceChildren(
     line("p", "answer", standing(state)),
     line("h3", "", "Breakpoints"),
-    adding(name),
+    adding(path.split("/").slice(-2).join("/")),
     list(state.breakpoints.map((one) => [
       `${one.text}   hit ${one.hits}×`, "remove", () => order("unbreak", { number: one.number }),
     ])),
     line("h3", "", `Answers of ${name}`),
-    forcing(name),
+    forcing(path),
     list(Object.entries(state.forced).map(([path, answer]) => [
       `${path} = ${answer}`, "release", () => order("unforce", { nodes: path }),
     ])),

@@ -23,6 +23,7 @@ export function initLanes() {
     if (names.has("folded") || names.has("filter")) drawNames();
     if (names.has("from") || names.has("to")) refreshLanes();
     if (names.has("doc") || names.has("node")) markNames();
+    if (names.has("node")) document.querySelector(".row.selected")?.scrollIntoView({ block: "nearest" });
     draw();
   });
   lanes.addEventListener("scroll", draw);
