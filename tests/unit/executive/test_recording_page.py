@@ -18,6 +18,7 @@ MODELS = [
     messages.RunReport,
     messages.ActionReport,
     messages.ResultMessage,
+    messages.InjectedReport,
 ]
 
 
