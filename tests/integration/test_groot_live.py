@@ -17,6 +17,7 @@ from executive.engine.remote import NotRunningError, send
 from executive.inspector.groot.answers import Answers
 from executive.inspector.groot.run_view import RunView
 from executive.inspector.groot.server import GrootServer
+from executive.inspector.past import PastRun
 
 LIMIT_S = 60.0
 RUNNING, SUCCESS, FAILURE = 1, 2, 3
@@ -26,6 +27,11 @@ format: 1
 mission: fetch
 cell: dry
 timeout_s: 60.0
+root: {subtree: job}
+""",
+    "job.yaml": """
+format: 1
+tree: job
 uses: [fetch_stubs]
 root:
   sequence:
@@ -133,6 +139,10 @@ def test_a_mission_is_watched_and_steered_while_it_runs(mission):
         until(lambda: statuses_in(client.ask("S")[0])[uids["put"]] == FAILURE)
         assert client.ask("U", unlock(uids["put"]))[0] == b"error"
     assert "debug.forced" in Recording.open(mission).result.report.reason
+    # The keys of a tree at another's root have a name of their own; who reads them is known.
+    run = PastRun.open(mission)
+    (grasp,) = run.names.nodes("grasp")
+    assert run.reads[grasp] == {"fetch.job:pose"}
 
 
 def test_a_server_that_ends_leaves_no_hook_behind(mission):

@@ -185,3 +185,24 @@ def test_for_each_shows_the_item(tmp_path):
     root = f"{{for_each: {{item: $part, in: [4, 5], child: {act('work')}}}}}"
     run = past(tmp_path, root, {"work": "S"})
     assert "for_each: item 2, part = 5" in about(run, "work")
+
+
+def test_a_guard_that_answers_for_its_node_is_told_with_what_it_asked(tmp_path):
+    run = past(
+        tmp_path,
+        """
+        sequence:
+          children:
+            - {set: {width: 2}}
+            - {skill: act, name: look, in: {name: look}, unless: width > 1}
+            - {skill: act, name: lift, in: {name: lift}}
+        """,
+        {"look": "S", "lift": "RRS"},
+    )
+    told = about(run, "look", 2, why_not)
+    assert "without look (unless width > 1 was true; width is 2 (set wrote it at @0))" in told
+
+
+def test_a_repeat_that_failed_says_in_which_round(tmp_path):
+    run = past(tmp_path, f"repeat: {{times: 5, child: {act('cut')}}}", {"cut": "SSF"})
+    assert "repeat failed (round 3 of 5)" in lines_of(run, why_ended(run))
