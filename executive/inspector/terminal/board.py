@@ -1,5 +1,6 @@
 """The blackboard after a tick: what each key holds, who wrote it and when."""
 
+from collections import Counter
 from collections.abc import Mapping
 
 from rich.text import Text
@@ -20,15 +21,19 @@ class BoardRows(Rows):
         super().__init__(id=id)
         self._states: Mapping[str, KeyState] = {}
         self._shown: list[str] = []
+        self._names: Counter[str] = Counter()
         self._tick = 0
-        self._words = ""
+        self._words, self._kept = "", ""
         self._values: dict[tuple[str, int], str] = {}
 
     def set_tick(self, states: Mapping[str, KeyState], tick: int) -> None:
-        """Show what the blackboard held after a tick; the cursor stays on its key."""
-        key = self.selected
+        """Show what the blackboard held after a tick; the cursor stays on its key.
+
+        It comes back to the key in ticks at which it has a value.
+        """
+        self._kept = self.selected or self._kept
         self._states, self._tick = states, tick
-        self._show(key)
+        self._show(self._kept)
 
     def filter(self, words: str) -> None:
         """Show only keys with these words in their full name."""
@@ -37,8 +42,9 @@ class BoardRows(Rows):
 
     def select(self, key: str) -> None:
         """Put the cursor on a key, if it has a value."""
-        if self._words and self._words not in key.lower():
+        if self._words not in key.lower():
             self._words = ""
+        self._kept = key
         self._show(key)
 
     @property
@@ -75,14 +81,16 @@ class BoardRows(Rows):
         """Return the widths of names and of values."""
         room = max(2 * _LEAST, self.size.width - 2 - 2 - 4 - _WRITER - _TICK)
         longest = max((len(self._short(key)) for key in self._shown), default=0)
-        names = max(_LEAST, min(longest, room * 2 // 5))
+        names = max(_LEAST, min(longest, room // 2))
         return names, room - names
 
-    @staticmethod
-    def _short(key: str) -> str:
-        return key.rpartition("/")[2]
+    def _short(self, key: str) -> str:
+        """Return the name of a key, with its scope where others have the name too."""
+        scope, _, name = key.rpartition("/")[2].rpartition(":")
+        return f"{name} ({scope})" if self._names[name] > 1 else name
 
     def _show(self, key: str) -> None:
+        self._names = Counter(name.rpartition(":")[2] for name in self._states)
         self._shown = [name for name in self._states if self._words in name.lower()]
         self.changed()
         if key in self._states and key in self._shown:
