@@ -187,10 +187,11 @@ LEAF = st.fixed_dictionaries(
     {"in": st.dictionaries(NAMES, DATA, max_size=3), "skill": NAMES},
     optional={"about": TEXTS, "if": st.just("x > 1"), "out": st.just({"a": "$a"})},
 ) | st.just({"when": 'a.b == "c"'})
+IN_ORDER = st.sampled_from(["sequence", "parallel"])
 NODES = st.recursive(
     LEAF,
     lambda inner: (
-        st.tuples(st.sampled_from(["sequence", "parallel"]), st.lists(inner, min_size=1, max_size=3))
+        st.tuples(IN_ORDER, st.lists(inner, min_size=1, max_size=3))
         .map(lambda pair: {pair[0]: {"about": "x", "children": pair[1]}})
         | st.lists(inner, min_size=1, max_size=2).map(lambda nodes: {"selector": nodes})
         | inner.map(lambda node: {"retry": {"child": node, "times": 3}})
