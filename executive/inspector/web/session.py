@@ -144,7 +144,8 @@ class Session:
             "halts": [asdict(halt) for halt in tick.halts],
             "faults": [asdict(fault) for fault in tick.faults],
             "board": [_row(key, state, number) for key, state in states.items()],
-            "picture": None if picture is None else asdict(picture),
+            "picture": picture
+            and {**asdict(picture), "time_s": recording.tick(picture.tick).time_s},
         }
 
     def history(self, key: str) -> dict[str, object]:

@@ -5,9 +5,10 @@ import time
 
 import numpy as np
 import pytest
+from py_trees.composites import Sequence
 from starlette.testclient import TestClient
 from starlette.websockets import WebSocketDisconnect
-from toy_runs import busy_tree, record
+from toy_runs import FAILURE, RUNNING, SUCCESS, Leaf, busy_tree, record
 
 from executive.engine.blackboard import Blackboard
 from executive.engine.remote import CommandServer
@@ -214,3 +215,20 @@ def test_a_token_is_needed_where_others_can_connect(session):
     assert client.get("/?token=wrong").status_code == 403
     assert client.get("/?token=secret").status_code == 200
     assert client.get("/api/run").status_code == 200  # by the cookie
+
+
+def test_a_picture_says_when_it_was_taken(tmp_path):
+    board = Blackboard()
+
+    def look():
+        board.write("toy:image", np.zeros((4, 6), np.uint8), "mission/look")
+        return SUCCESS
+
+    wait = Leaf("wait", RUNNING, RUNNING, RUNNING, FAILURE)
+    tree = Sequence("mission", memory=True, children=[Leaf("look", look), wait])
+    record(tmp_path / "seen.mcap", tree, board)
+    session = Session(tmp_path / "seen.mcap")
+    last = session.tick(len(session.recording) - 1)
+    picture = last["picture"]
+    assert picture["time_s"] == session.recording.tick(picture["tick"]).time_s
+    assert picture["time_s"] < last["time_s"]

@@ -28,7 +28,7 @@ async function start() {
   const run = await getRun();
   document.title = `${run.mission} · Cellwright`;
   byId("mission").textContent = run.mission;
-  byId("about").textContent = `seed ${run.seed} · ${run.file} · ${run.about}`;
+  byId("about").textContent = [`seed ${run.seed}`, run.file, run.about].filter(Boolean).join(" · ");
   const last = Math.max(run.ticks - 1, 0);
   const asked = Number(new URLSearchParams(location.search).get("tick") ?? last);
   Object.assign(store, { run, from: 0, to: Math.max(last, 1), tick: Math.min(asked, last), following: !run.ended });

@@ -17,7 +17,7 @@ export function initPicture() {
 function draw() {
   const picture = store.doc?.picture;
   const identity = JSON.stringify([picture, layers]);
-  if (identity === drawn) return;
+  if (identity === drawn) return hint();
   drawn = identity;
   if (!picture) {
     panel.innerHTML = '<p class="empty">No image has been written to the blackboard yet.</p>';
@@ -40,7 +40,12 @@ function draw() {
 function hint(text) {
   const note = panel.querySelector(".hint");
   const picture = store.doc?.picture;
-  if (note && picture) note.textContent = text ?? `image ${picture.image}, written at tick ${picture.tick}`;
+  if (note && picture) note.textContent = text ?? `image ${picture.image}, written at tick ${picture.tick}${age(picture)}`;
+}
+
+function age(picture) {
+  const seconds = store.doc.time_s - picture.time_s;
+  return seconds > 0 ? `, ${seconds.toFixed(1)} s before` : "";
 }
 
 function drawShape(shape, width) {
