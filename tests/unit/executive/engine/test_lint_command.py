@@ -78,7 +78,8 @@ def test_halts_are_listed(cellwright):
     mission = packaged_trees() / "missions" / "untangle.yaml"
     assert "\n  the mission after 900 s\n" in cellwright("lint", "--halts", mission).stdout
     leaves = json.loads(cellwright("lint", "--halts", "--json", mission).stdout)["untangle"]
-    assert all(leaf["by"] == ["the mission after 900 s"] for leaf in leaves)
+    round_over = "untangle/in_time: timeout after 60 s"
+    assert all(leaf["by"] == ["the mission after 900 s", round_over] for leaf in leaves)
 
 
 @pytest.mark.parametrize("command", ["check", "lint", "fmt"])
