@@ -44,7 +44,7 @@ $(STAMP): pyproject.toml constraints.txt
 demo: setup ## Untie a knotted cable with the simulated YuMi, and record it
 	@mkdir -p runs
 	$(BIN)/cellwright run trees/missions/untangle.yaml --seed $(DEMO_SEED) \
-		--record runs/demo.mcap --html runs/demo.html
+		--record runs/demo.mcap --overwrite --html runs/demo.html
 	$(BIN)/cellwright inspect runs/demo.mcap --plain
 	@echo
 	@echo "Open next:"

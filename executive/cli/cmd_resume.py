@@ -15,14 +15,16 @@ from executive.cli.reported_run import (
     Debugging,
     HtmlOption,
     JsonOption,
+    OverwriteOption,
     Prepared,
     RecordOption,
     Subject,
     TimeoutOption,
     ViewOption,
+    require_free,
     run_and_exit,
 )
-from executive.core.errors import InputError
+from executive.core.errors import InputError, RecordingError
 from executive.engine.checkpoints.choosing import CheckpointInfo, checkpoints, chosen
 from executive.engine.control import RunControl
 from executive.engine.recording.reader import Recording
@@ -34,6 +36,7 @@ class _Request:
 
     wanted: str
     record: Path | None
+    overwrite: bool
     timeout_s: float | None
     anyway: bool
     as_it_stands: bool
@@ -63,6 +66,7 @@ def resume(
         ),
     ] = False,
     record: RecordOption = None,
+    overwrite: OverwriteOption = False,
     timeout: TimeoutOption = None,
     view: ViewOption = False,
     html: HtmlOption = None,
@@ -74,17 +78,24 @@ def resume(
 
     The new recording begins with a copy of the old one, which stays as it is.
     """
-    earlier = Recording.open(recording)
+    earlier = _opened(recording)
     if listed:
         _print_checkpoints(checkpoints(earlier), as_json=as_json)
         return
-    request = _Request(wanted, record, timeout, anyway, as_it_stands)
+    request = _Request(wanted, record, overwrite, timeout, anyway, as_it_stands)
 
     def prepare(control: RunControl, console: Console, stack: ExitStack) -> Prepared:
         return _prepared(earlier, request, control, console, stack)
 
     subject = Subject(earlier.header.mission, earlier.header.seed, view, html, Debugging())
     run_and_exit(subject, prepare, as_json=as_json)
+
+
+def _opened(recording: Path) -> Recording:
+    try:
+        return Recording.open(recording)
+    except RecordingError as error:
+        raise InputError(str(error)) from error  # the user named the wrong file
 
 
 def _prepared(
@@ -96,6 +107,7 @@ def _prepared(
 ) -> Prepared:
     info = chosen(earlier, request.wanted)
     _require_another_file(request.record, earlier.path)
+    require_free(request.record, overwrite=request.overwrite)
     from executive.app.catalogue import port_types, skills
     from executive.engine.checkpoints.resuming import Consent, recorded_mission, take_up
 

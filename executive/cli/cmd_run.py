@@ -16,6 +16,7 @@ from executive.cli.reported_run import (
     HtmlOption,
     InjectOption,
     JsonOption,
+    OverwriteOption,
     PausedOption,
     Prepared,
     RecordOption,
@@ -23,6 +24,7 @@ from executive.cli.reported_run import (
     TimeoutOption,
     ViewOption,
     read_lines,
+    require_free,
     run_and_exit,
 )
 from executive.cli.settings import apply_settings
@@ -41,6 +43,7 @@ class _Request:
     seed: int
     assignments: tuple[str, ...]
     record: Path | None
+    overwrite: bool
     timeout_s: float | None
     inject: tuple[str, ...]
     faults: Path | None
@@ -54,6 +57,7 @@ def run(
         typer.Option("--set", metavar="KEY=VALUE", help="Set an input or a part of the scenario."),
     ] = None,
     record: RecordOption = None,
+    overwrite: OverwriteOption = False,
     timeout: TimeoutOption = None,
     view: ViewOption = False,
     html: HtmlOption = None,
@@ -72,7 +76,14 @@ def run(
     mission; a second one lets it go on. One that was killed is taken up by `cellwright resume`.
     """
     request = _Request(
-        mission, seed, tuple(assignments or ()), record, timeout, tuple(inject or ()), faults
+        mission=mission,
+        seed=seed,
+        assignments=tuple(assignments or ()),
+        record=record,
+        overwrite=overwrite,
+        timeout_s=timeout,
+        inject=tuple(inject or ()),
+        faults=faults,
     )
 
     def prepare(control: RunControl, console: Console, stack: ExitStack) -> Prepared:
@@ -92,6 +103,7 @@ def _prepared(
         request.assignments, tuple(mission.document.in_), mission.document.scenario
     )
     injections = _injections(request)
+    require_free(request.record, overwrite=request.overwrite)
     # Only now, with the input in order, is it worth loading simulators and planners.
     from executive.app.compose import open_cell
     from executive.engine.builder import build

@@ -18,6 +18,7 @@ import typer
 from typer.core import TyperGroup
 
 from executive.core.errors import CellwrightError, InputError
+from executive.core.registry import closest
 
 _COMMANDS: Mapping[str, str] = MappingProxyType(
     {
@@ -62,9 +63,13 @@ class _LazyCommands(TyperGroup):
         return [*_COMMANDS]
 
     def get_command(self, ctx: Any, cmd_name: str) -> Any:  # noqa: ARG002 - see above
-        """Import and return a command, None where there is none of that name."""
+        """Import and return a command.
+
+        Raises:
+            InputError: There is none of that name.
+        """
         if cmd_name not in _COMMANDS:
-            return None
+            raise InputError(f"no command {cmd_name!r}; {closest(cmd_name, [*_COMMANDS])}")
         name = cmd_name.replace("-", "_")
         name = f"{name}_" if keyword.iskeyword(name) else name
         command = getattr(import_module(_COMMANDS[cmd_name]), name)

@@ -37,6 +37,9 @@ RecordOption = Annotated[
     Path | None,
     typer.Option(dir_okay=False, help="Recording; runs/TIME_MISSION_SEED.mcap by default."),
 ]
+OverwriteOption = Annotated[
+    bool, typer.Option("--overwrite", help="Replace a recording that is there already.")
+]
 TimeoutOption = Annotated[
     float | None, typer.Option(min=0.0, help="Limit on the cell's clock, in seconds.")
 ]
@@ -178,6 +181,19 @@ def _debugger(debugging: Debugging, tree: "BuiltTree", control: RunControl) -> "
     if debugging.paused:
         control.pause("--paused")
     return debugger
+
+
+def require_free(record: Path | None, *, overwrite: bool) -> None:
+    """Refuse to write over an earlier recording, unless that is asked for.
+
+    Raises:
+        InputError: There is one.
+    """
+    if record is not None and record.exists() and not overwrite:
+        raise InputError(
+            f"--record {record}: is there already, and nobody can record its run again; "
+            "try another name, or --overwrite"
+        )
 
 
 def read_lines(file: Path, parse: Callable[[str], list[T]]) -> list[T]:

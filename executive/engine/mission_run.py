@@ -1,6 +1,7 @@
 """One recorded run of a mission on a cell: from the built tree to the report."""
 
 import dataclasses
+import itertools
 import platform
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -203,9 +204,11 @@ def mission_header(plan: RunPlan, nodes: Sequence[NodeInfo]) -> MissionHeader:
 
 
 def default_recording(mission: str, seed: int) -> Path:
-    """Return a file in `runs/` that says when, what and with which seed."""
-    stamp = datetime.now(UTC).strftime("%Y%m%dT%H%M%SZ")
-    return Path("runs") / f"{stamp}_{mission}_{seed}.mcap"
+    """Return a file in `runs/` that is not there yet and says when, what and with which seed."""
+    name = f"{datetime.now(UTC).strftime('%Y%m%dT%H%M%SZ')}_{mission}_{seed}"
+    names = itertools.chain([name], (f"{name}_{number}" for number in itertools.count(2)))
+    paths = (Path("runs") / f"{one}.mcap" for one in names)
+    return next(path for path in paths if not path.exists())
 
 
 def versions() -> dict[str, str]:

@@ -112,7 +112,7 @@ def test_a_node_that_raises_exits_with_3_and_names_node_and_recording(mission):
     assert "toy/toy_end (toy_end): raised at tick 3" in document["reason"]
     assert "the toy broke" in document["reason"]
     assert Recording.open(Path("broken.mcap")).tick(3).faults[0].path == "toy/toy_end"
-    printed = run(mission, "--set", "ending=raise", "--record", "broken.mcap").stdout
+    printed = run(mission, "--set", "ending=raise", "--record", "again.mcap").stdout
     assert "toy/toy_end" in printed
     assert "broken.mcap" in printed
 
@@ -333,3 +333,19 @@ def test_an_interrupt_before_the_first_tick_is_an_abort(mission, monkeypatch):
     monkeypatch.setattr(toy_cellwright.compose, "open_cell", interrupted)
     code, document = run_json(mission)
     assert (code, document["outcome"]) == (4, "aborted")
+
+
+def test_an_earlier_recording_is_not_replaced_unless_that_is_asked_for(mission):
+    run_json(mission, "--record", "a.mcap")
+    before = Path("a.mcap").read_bytes()
+    code, document = run_json(mission, "--record", "a.mcap")
+    assert code == 2
+    assert "is there already" in document["reason"]
+    assert Path("a.mcap").read_bytes() == before
+    assert run_json(mission, "--record", "a.mcap", "--overwrite")[0] == 0
+    assert Path("a.mcap").read_bytes() != before
+
+
+def test_an_unknown_command_is_answered_with_the_closest():
+    result = CliRunner().invoke(app, ["chek"])
+    assert "did you mean 'check'" in str(result.exception)

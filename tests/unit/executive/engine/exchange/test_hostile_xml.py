@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from executive.core.errors import DocumentError, InputError
 from executive.engine.exchange.importing import ImportOptions, import_file, import_text
+from executive.engine.exchange.naming import Namer
 from executive.engine.exchange.scripts import Vocabulary, read_script
 from executive.engine.exchange.vocabulary import CONDITIONS, ENDINGS, PORTS, REFUSED
 from executive.engine.loader import load_program
@@ -160,7 +161,7 @@ def test_any_bytes_become_documents_or_faults(data):
 )
 def test_any_text_is_a_script_or_is_refused(text):
     try:
-        statements = read_script(text, Vocabulary(str))
+        statements = read_script(text, Vocabulary(Namer("key")))
     except InputError:
         return
     for statement in statements:
