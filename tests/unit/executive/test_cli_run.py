@@ -114,7 +114,7 @@ def test_a_node_that_raises_exits_with_3_and_names_node_and_recording(mission):
     assert Recording.open(Path("broken.mcap")).tick(3).faults[0].path == "toy/toy_end"
     printed = run(mission, "--set", "ending=raise", "--record", "again.mcap").stdout
     assert "toy/toy_end" in printed
-    assert "broken.mcap" in printed
+    assert "again.mcap" in printed
 
 
 @pytest.mark.parametrize(
