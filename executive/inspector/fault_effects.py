@@ -56,9 +56,9 @@ def effect_of(run: PastRun, kind: Kind) -> Effect:
             happened=False, to_the_end=False, answered_by="", answer="", left_running=running
         )
     node, tick = index.indices.get(report.places[0]), report.first_tick
-    by, answer, to_the_end = "", "", False
-    if node is not None and kind not in KEY_KINDS:
-        by, answer, to_the_end = _answered(run, node, tick)
+    if node is None or kind in KEY_KINDS:
+        return Effect(True, False, "", "", running)
+    by, answer, to_the_end = _answered(run, node, tick)
     return Effect(True, to_the_end, by, answer, running)
 
 
