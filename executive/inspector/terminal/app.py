@@ -18,6 +18,7 @@ from executive.inspector.terminal.typing_line import Typing
 class InspectorApp(Typing):
     """Shows one recording; returns what was wrong with it, if it could not be opened."""
 
+    TITLE = "Cellwright"
     BINDINGS: ClassVar[list[BindingType]] = [*bindings()]
 
     @on(Rows.Moved, "#board")

@@ -64,7 +64,7 @@ class BoardRows(Rows):
         fresh = state.tick == self._tick
         names, values = self._widths()
         writer = state.writer.rpartition("/")[2] or "input"
-        text = Text(f"{FRESH if fresh else ' '} ", self.look("running"))
+        text = Text.assemble((f"{FRESH if fresh else ' '} ", self.look("running")))
         text.append(_fitted(self._short(key), names), self.look("strong" if fresh else "name"))
         text.append("  ").append(_fitted(self._value(key, state), values))
         text.append("  ").append(_fitted(writer, _WRITER), self.look("muted"))
@@ -79,7 +79,7 @@ class BoardRows(Rows):
 
     def _widths(self) -> tuple[int, int]:
         """Return the widths of names and of values."""
-        room = max(2 * _LEAST, self.size.width - 2 - 2 - 4 - _WRITER - _TICK)
+        room = max(2 * _LEAST, self.room - 2 - 2 - 4 - _WRITER - _TICK)
         longest = max((len(self._short(key)) for key in self._shown), default=0)
         names = max(_LEAST, min(longest, room // 2))
         return names, room - names

@@ -87,7 +87,7 @@ class Lanes(Widget):
         & > .lanes--failure { color: $error; }
         & > .lanes--running { color: $warning; }
         & > .lanes--halted { color: $accent; }
-        & > .lanes--muted { color: $text-muted; }
+        & > .lanes--muted { text-style: dim; }
         & > .lanes--head { color: $text-primary; text-style: bold; }
     }
     """
@@ -156,7 +156,7 @@ class Lanes(Widget):
         for column in np.unique((self._found[inside] - self.span.first) * self.width):
             cells[_NAME_WIDTH + int(column) // self.span.count] = "•"
         head = min(_NAME_WIDTH + self._head(), len(cells) - 1)
-        text = Text("".join(cells[:head]), self._look("muted"), end="")
+        text = Text.assemble(("".join(cells[:head]), self._look("muted")), end="")
         text.append("▼", self._look("head"))
         return text.append("".join(cells[head + 1 :]), self._look("muted"))
 
@@ -183,7 +183,7 @@ class Lanes(Widget):
 
     def _lane(self, name: str, codes: NDArray[np.uint8]) -> Text:
         label = name if len(name) < _NAME_WIDTH else f"{name[: _NAME_WIDTH - 2]}…"
-        text = Text(label.ljust(_NAME_WIDTH), self._look("muted"), end="")
+        text = Text.assemble((label.ljust(_NAME_WIDTH), self._look("muted")), end="")
         if not codes.size:
             return text
         known = min(self.width, self.span.column(len(self._activity or ()), self.width))

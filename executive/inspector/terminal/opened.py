@@ -10,7 +10,7 @@ from executive.engine.recording.reader import Recording
 from executive.inspector.past import PastRun
 from executive.inspector.web.activity import Activity
 
-_PIECE = 500
+_PIECE = 2000
 """Ticks that are read between two words about how far reading is."""
 
 

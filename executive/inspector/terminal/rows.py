@@ -45,11 +45,11 @@ class Rows(ScrollView, can_focus=True, inherit_bindings=False):
         & > .rows--failure { color: $text-error; text-style: bold; }
         & > .rows--running { color: $text-warning; }
         & > .rows--halted { color: $text-accent; }
-        & > .rows--muted { color: $text-muted; }
+        & > .rows--muted { text-style: dim; }
         & > .rows--strong { text-style: bold; }
         & > .rows--name { color: $text-primary; }
-        & > .rows--cursor { background: $boost; }
-        &:focus > .rows--cursor { background: $primary 35%; }
+        & > .rows--cursor { background: $panel; }
+        &:focus > .rows--cursor { background: $primary-muted; }
     }
     """
     BINDINGS: ClassVar[list[BindingType]] = [
@@ -96,6 +96,11 @@ class Rows(ScrollView, can_focus=True, inherit_bindings=False):
         """Return one row."""
         raise NotImplementedError
 
+    @property
+    def room(self) -> int:
+        """Columns that a row may have."""
+        return self.scrollable_content_region.width
+
     def changed(self, *, width: int = 0) -> None:
         """Draw anew after rows have changed.
 
@@ -129,7 +134,7 @@ class Rows(ScrollView, can_focus=True, inherit_bindings=False):
     def render_line(self, y: int) -> Strip:
         """Return one line of what can be seen."""
         index = self.scroll_offset.y + y
-        style, width, left = self.rich_style, self.size.width, self.scroll_offset.x
+        style, width, left = self.rich_style, self.room, self.scroll_offset.x
         if not 0 <= index < self.count:
             return Strip.blank(width, style)
         here = index == self.cursor

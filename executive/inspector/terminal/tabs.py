@@ -21,7 +21,7 @@ class TabLine(Widget):
             color: $block-cursor-foreground; background: $block-cursor-background;
             text-style: bold;
         }
-        & > .tabs--other { color: $text-muted; }
+        & > .tabs--other { text-style: dim; }
     }
     """
 

@@ -95,7 +95,7 @@ class Told(Rows):
         self._break()
 
     def _break(self) -> None:
-        width = self.size.width - 2
+        width = self.room - 2
         self._rows = []
         widest = 0
         for line in self._lines:

@@ -171,7 +171,7 @@ def test_what_never_ran_is_folded_away(tmp_path):
     async def look(app, pilot):
         tree, count = app.tree_rows, app.tree_rows.count
         await pilot.press("h")
-        idle = [node for node in tree.outline.folded]
+        idle = list(tree.outline.folded)
         assert [tree.outline.nodes[node].name for node in idle] == ["get"]
         await pilot.press("h")
         assert tree.count == count
