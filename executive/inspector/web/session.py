@@ -44,7 +44,8 @@ class Session:
         self._growing = GrowingRecording(path)
         self._activity = Activity(len(self.recording.header.nodes))
         self._past: PastRun | None = None
-        threading.Thread(target=self._catch_up, name="lanes", daemon=True).start()
+        self._catching_up = threading.Thread()
+        self._fill_lanes()
 
     @property
     def recording(self) -> Recording:
@@ -64,15 +65,21 @@ class Session:
     def refresh(self) -> bool:
         """Read what has been written since; return whether there was anything."""
         with self._lock:
-            if not self._growing.refresh():
-                return False
-            self._tick_document.cache_clear()
-            if len(self.recording) - len(self._activity) <= _STRIDE:
-                self._activity.follow(self.recording)
-            return True
+            grew = self._growing.refresh()
+            if grew:
+                self._tick_document.cache_clear()
+            self._fill_lanes()
+            return grew
+
+    def _fill_lanes(self) -> None:
+        """Take into the lanes what is not in yet: a little at once, much in the background."""
+        if len(self.recording) - len(self._activity) <= _STRIDE:
+            self._activity.follow(self.recording)
+        elif not self._catching_up.is_alive():
+            self._catching_up = threading.Thread(target=self._catch_up, name="lanes", daemon=True)
+            self._catching_up.start()
 
     def _catch_up(self) -> None:
-        """Take in what was there when the page was opened, a little at a time."""
         while len(self._activity) < len(self.recording):
             with self._lock:
                 self._activity.follow(self.recording, len(self._activity) + _STRIDE)
