@@ -14,6 +14,7 @@ from perception.cable.classifiers.continuity import ContinuityClassifier
 from perception.cable.classifiers.edges import EdgeClassifier
 from perception.cable.coverage import explained_share
 from perception.cable.covered_ends import ends_are_clear
+from perception.cable.crowding import doubt_shared
 from perception.cable.endpoints import EndpointConfig
 from perception.cable.grasp_points import GraspConfig
 from perception.cable.interfaces import CrossingClassifier, Tracer
@@ -137,7 +138,7 @@ class ClassicCableVision:
 
     def crossings(self, image: GreyImage, traces: Sequence[Trace]) -> tuple[Crossing, ...]:
         """Classify all crossings; see `CrossingClassifier.classify`."""
-        return self._classifier.classify(self._seen(image), traces)
+        return doubt_shared(self._classifier.classify(self._seen(image), traces))
 
     def knots(
         self, image: GreyImage, traces: Sequence[Trace], crossings: Sequence[Crossing]
