@@ -13,7 +13,8 @@ from perception.models.store import load_network, read_config
 from perception.models.tracer_crop import CELL, HERE, SIZE, make_crop
 from perception.models.tracer_math import SPREAD, step_logits
 
-# A belief that is all in one place has this peak; less than the second share of it is unclear.
+# A belief that is all in one place has this peak, less where a temperature spreads it; with
+# less than a share of that the way is unclear.
 PEAK = 1.0 / (2.0 * np.pi * SPREAD**2)
 CLEAR = 0.75
 
@@ -55,7 +56,7 @@ class StepModel:
             [make_crop(image, p.points, f) for p, f in zip(paths, frames, strict=True)]
         )
         cells, ends = self._beliefs(crops)
-        unclear = np.flatnonzero(cells.max(axis=(1, 2)) < CLEAR * PEAK)
+        unclear = np.flatnonzero(cells.max(axis=(1, 2)) < CLEAR * PEAK / self._temperature)
         if len(unclear):
             mirrored, mirrored_ends = self._beliefs(np.ascontiguousarray(crops[unclear, :, ::-1]))
             cells[unclear] = 0.5 * (cells[unclear] + mirrored[:, ::-1])

@@ -56,10 +56,11 @@ def _wave(bright):
     return image.clip(0, 255).astype(np.uint8), line
 
 
+@pytest.mark.parametrize("version", ["tracer_v1", "tracer_v2"])
 @pytest.mark.parametrize("bright", [True, False])
-def test_the_tracer_follows_a_loop(bright):
+def test_the_tracer_follows_a_loop(version, bright):
     image, line = _wave(bright)
-    tracer = LearnedTracer(FOLDER / "tracer_v1")
+    tracer = LearnedTracer(FOLDER / version)
     assert isinstance(tracer, Tracer)
     ends = [
         Endpoint(line[k], (line[n] - line[k]) / np.linalg.norm(line[n] - line[k]), 1.0)
@@ -78,7 +79,7 @@ def _dense(points):
 
 
 def test_no_cable_no_trace():
-    tracer = LearnedTracer(FOLDER / "tracer_v1")
+    tracer = LearnedTracer(FOLDER / "tracer_v2")
     assert tracer.trace(np.full((200, 200), 50, np.uint8), np.array([[80.0, 90.0]]), []) is None
 
 
