@@ -79,10 +79,12 @@ def _with_plug(
     """Return the graph with one more connector; as it was where no cable comes to it."""
     node = len(graph.nodes_px)
     gaps_px = cv2.distanceTransform((~plug.body).astype(np.uint8), cv2.DIST_L2, 3)
+    limits = np.array(gaps_px.shape[::-1]) - 1
     kept: list[Edge] = []
     stubs: set[int] = set()
     for number, edge in enumerate(graph.edges):
-        columns, rows = np.rint(edge.points_px).astype(int).T
+        # A smoothed edge may lie half a pixel outside the image.
+        columns, rows = np.rint(edge.points_px).astype(int).clip(0, limits).T
         near = gaps_px[rows, columns] <= config.reach_widths * width_px
         pieces = [edge] if not near.any() or number in graph.plugs else _outside(edge, near, node)
         for piece in pieces:

@@ -4,8 +4,10 @@ import numpy as np
 import pytest
 from synthetic_cable import SHAPE, Drawing, evenly, render
 
+from perception.cable.graph import Edge, SkeletonGraph, arms_of
 from perception.cable.observation import observe
-from perception.cable.plugs import find_plugs
+from perception.cable.plug_ends import with_plugs
+from perception.cable.plugs import Plug, find_plugs
 from perception.cable.tracers.centre_line import arc_lengths
 from perception.cable.types import Trace, TraceEnd
 from perception.cable.vision import ClassicCableVision
@@ -108,3 +110,16 @@ def test_half_a_cable_never_gives_a_verdict(touching):
     sure = wholeness(observe(image), half)
     trace = Trace(half, TraceEnd.ENDPOINT, sure)
     assert ClassicCableVision().knotted_probability((trace,), ()) == pytest.approx(0.5)
+
+
+def test_a_cable_along_the_border_of_the_image_is_no_error():
+    """A smoothed centre line may lie half a pixel outside."""
+    height, width = 60, 200
+    along = np.linspace(60.0, 190.0, 131)
+    line = np.column_stack([along, np.full_like(along, height - 0.4)])
+    edge = Edge(line, np.full(len(line), 3.0), (0, 1))
+    graph = SkeletonGraph((edge,), line[[0, -1]], arms_of((edge,), 2))
+    body = np.zeros((height, width), dtype=bool)
+    body[height - 12 :, 36:58] = True
+    plug = Plug(np.array([47.0, height - 6.0]), np.array([1.0, 0.0]), 11.0, body)
+    assert len(with_plugs(graph, [plug], 6.0).plugs) == 1
