@@ -115,7 +115,7 @@ def _still(stage: Stage, frames: Sequence[SceneFrame]) -> dict[str, object]:
 
 
 def _moving(stage: Stage, frames: Sequence[SceneFrame]) -> dict[str, object]:
-    """Return the first time and all times from it on, poses and cable a frame, traces and captions."""
+    """Return the first time, all times from it on, poses and cable a frame, traces, captions."""
     known = {link.name for link in stage.robot.links if link.shapes}
     links = sorted(known & frames[0].link_poses.keys())
     poses: dict[str, Floats] = {}
