@@ -179,7 +179,7 @@ class _Answers:
                 if progress != told:
                     told = progress
                     await socket.send_text(json.dumps(progress))
-                if self._session.complete:
+                if progress["ended"] and progress["in_lanes"] == progress["ticks"]:
                     break
                 await asyncio.wait([gone], timeout=POLL_S)
             if not gone.done():

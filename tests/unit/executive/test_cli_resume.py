@@ -7,7 +7,7 @@ import toy_cellwright
 from typer.testing import CliRunner
 
 from executive.cli.main import app
-from executive.core.errors import RecordingError
+from executive.core.errors import InputError
 from executive.engine.recording.reader import Recording
 
 
@@ -73,4 +73,4 @@ def test_a_recording_is_not_written_over_itself(whole):
 def test_a_file_that_is_no_recording_is_told(whole):
     (whole.parent / "other.mcap").write_bytes(b"other")
     answer = invoke("resume", "other.mcap")
-    assert isinstance(answer.exception, RecordingError)
+    assert isinstance(answer.exception, InputError)
