@@ -21,11 +21,11 @@ from executive.core.errors import InputError
 from executive.core.outcome import failure, success
 from executive.core.registry import Registry
 from executive.core.skill import Port, Skill, SkillRun
-from executive.engine.builder import build
-from executive.engine.loader import Program, load_program
-from executive.engine.probe import TreeProbe
-from executive.engine.sources import read_source
-from executive.engine.validation import validate
+from executive.engine.language.sources import read_source
+from executive.engine.loading.loader import Program, load_program
+from executive.engine.loading.validation import validate
+from executive.engine.nodes.builder import build
+from executive.engine.running.probe import TreeProbe
 
 CASES, QUICK_CASES = 100_000, 2_000
 TICKS, PERIOD_S = 8, 0.1

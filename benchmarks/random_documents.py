@@ -6,7 +6,7 @@ from typing import Any
 
 from hypothesis import strategies as st
 
-from executive.engine.block_models import KINDS
+from executive.engine.language.block_models import KINDS
 
 Node = dict[str, Any]
 

@@ -19,12 +19,12 @@ from benchmarks.random_documents import ROOTS, Node, document
 from benchmarks.tick_trees import Scripts, cell, our_program
 from executive.core.clock import ManualClock
 from executive.core.registry import Registry
-from executive.engine.builder import BuiltTree, build
-from executive.engine.loader import Program
-from executive.engine.mission_run import recorded_nodes
-from executive.engine.probe import TreeProbe
+from executive.engine.loading.loader import Program
+from executive.engine.nodes.builder import BuiltTree, build
 from executive.engine.recording.messages import MissionHeader, SourceFile
 from executive.engine.recording.writer import RecordingWriter
+from executive.engine.running.mission_run import recorded_nodes
+from executive.engine.running.probe import TreeProbe
 from executive.inspector.past import PastRun
 from executive.inspector.retick.retick import Retick, retick
 

@@ -27,8 +27,8 @@ from executive.core.clock import ManualClock
 from executive.core.outcome import failure, success
 from executive.core.registry import Registry
 from executive.core.skill import In, Port, Skill, SkillRun
-from executive.engine.builder import BuiltTree, build
-from executive.engine.loader import Program, load_program
+from executive.engine.loading.loader import Program, load_program
+from executive.engine.nodes.builder import BuiltTree, build
 
 STATION_NODES = 22
 BLOCK_NODES = 9

@@ -25,12 +25,12 @@ from py_trees.trees import BehaviourTree
 from benchmarks import checking, reticking
 from benchmarks.harness import Row, median, percentile_95
 from benchmarks.tick_trees import Node, Scripts, blocks, cell, chain, our_tree, their_tree
-from executive.engine.builder import BuiltTree
-from executive.engine.mission_run import recorded_nodes
-from executive.engine.probe import TreeProbe
+from executive.engine.nodes.builder import BuiltTree
 from executive.engine.recording.messages import MissionHeader
 from executive.engine.recording.reader import Recording
 from executive.engine.recording.writer import RecordingWriter
+from executive.engine.running.mission_run import recorded_nodes
+from executive.engine.running.probe import TreeProbe
 
 TICK_HZ = 10.0
 HOUR_TICKS = 36_000

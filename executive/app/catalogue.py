@@ -10,7 +10,7 @@ from typing import Final
 
 from executive.core.registry import LazyRegistry, Registry
 from executive.core.skill import Skill
-from executive.engine.packages import add_packaged_skills, add_packaged_types
+from executive.engine.loading.packages import add_packaged_skills, add_packaged_types
 
 _SKILLS: Final = {
     "account_for_cable": "skills.cable.account_for_cable:AccountForCable",

@@ -14,7 +14,7 @@ from executive.core.process_work import ProcessWorker
 from executive.core.registry import closest
 from executive.core.work import InlineWorker, ThreadWorker, Worker
 from executive.core.world import Cell, RestorableCell, StreamMessage
-from executive.engine.document import CellDocument
+from executive.engine.language.document import CellDocument
 from perception.cable.interfaces import CableVision
 
 # Arms in the ready pose reach this far into the overhead image.

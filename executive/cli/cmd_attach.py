@@ -15,7 +15,7 @@ from executive.cli.console import print_error, results
 from executive.cli.recordings import RunArgument
 from executive.core.errors import InputError
 from executive.core.registry import closest
-from executive.engine.remote import NotRunningError, send
+from executive.engine.running.remote import NotRunningError, send
 
 _Arguments = dict[str, Any]
 

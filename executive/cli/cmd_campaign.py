@@ -17,8 +17,8 @@ from executive.core.errors import InputError
 from executive.engine.faults.processes import Processes
 from executive.engine.faults.store import CampaignFolder, CampaignPlan, FaultRun
 from executive.engine.faults.variants import Wanted, parse_kinds, variants
-from executive.engine.loader import load_mission
-from executive.engine.runner import MissionOutcome
+from executive.engine.loading.loader import load_mission
+from executive.engine.running.runner import MissionOutcome
 from executive.inspector.fault_effects import seen_in
 from executive.inspector.past import PastRun
 

@@ -11,7 +11,7 @@ import typer
 from executive.app.catalogue import port_types, skills
 from executive.cli.files import TREES, yaml_files
 from executive.core.errors import Fault
-from executive.engine.loader import Checked, check_files
+from executive.engine.loading.loader import Checked, check_files
 
 
 def check(

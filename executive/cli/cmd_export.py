@@ -8,7 +8,7 @@ import typer
 from executive.app.catalogue import port_types, skills
 from executive.cli.console import chatter
 from executive.engine.exchange.exporting import export_program
-from executive.engine.loader import load_program
+from executive.engine.loading.loader import load_program
 
 
 def export(

@@ -11,7 +11,7 @@ from executive.cli.console import chatter
 from executive.core.errors import InputError
 from executive.engine.exchange.importing import ImportOptions, import_file
 from executive.engine.exchange.naming import our_name
-from executive.engine.loader import check_files
+from executive.engine.loading.loader import check_files
 
 
 def import_(

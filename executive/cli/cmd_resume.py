@@ -26,8 +26,8 @@ from executive.cli.reported_run import (
 )
 from executive.core.errors import InputError, RecordingError
 from executive.engine.checkpoints.choosing import CheckpointInfo, checkpoints, chosen
-from executive.engine.control import RunControl
 from executive.engine.recording.reader import Recording
+from executive.engine.running.control import RunControl
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,7 +116,7 @@ def _prepared(
     mission, notes = recorded_mission(header, consent, skills=skills(), types=types)
     # Only now, with the input in order, is it worth loading simulators and planners.
     from executive.app.compose import open_cell
-    from executive.engine.mission_run import RunPlan, default_recording
+    from executive.engine.running.mission_run import RunPlan, default_recording
 
     with control.interruptible(), console.status(f"opening {mission.document.cell}"):
         cell = open_cell(mission.cell, header.scenario, header.seed)

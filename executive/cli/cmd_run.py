@@ -28,8 +28,8 @@ from executive.cli.reported_run import (
     run_and_exit,
 )
 from executive.cli.settings import apply_settings
-from executive.engine.control import RunControl
-from executive.engine.loader import load_mission
+from executive.engine.loading.loader import load_mission
+from executive.engine.running.control import RunControl
 
 if TYPE_CHECKING:
     from executive.engine.faults.grammar import Injection
@@ -106,8 +106,8 @@ def _prepared(
     require_free(request.record, overwrite=request.overwrite)
     # Only now, with the input in order, is it worth loading simulators and planners.
     from executive.app.compose import open_cell
-    from executive.engine.builder import build
-    from executive.engine.mission_run import RunPlan, default_recording
+    from executive.engine.nodes.builder import build
+    from executive.engine.running.mission_run import RunPlan, default_recording
 
     plan = RunPlan(
         mission=mission,

@@ -9,7 +9,7 @@ import typer
 
 from executive.app.catalogue import skills as shipped_skills
 from executive.core.skill import Port, Skill, device_types, input_ports
-from executive.engine.porttypes import type_name
+from executive.engine.language.porttypes import type_name
 
 
 def skills(

@@ -9,8 +9,8 @@ from rich.tree import Tree
 
 from executive.app.catalogue import port_types, skills
 from executive.cli.cmd_skills import port_line
-from executive.engine.expansion import ExpandedNode, expand
-from executive.engine.loader import Program, load_program
+from executive.engine.loading.expansion import ExpandedNode, expand
+from executive.engine.loading.loader import Program, load_program
 
 tree = typer.Typer(help="Show a tree with its subtrees.", no_args_is_help=True)
 

@@ -184,8 +184,8 @@ def runs_folder() -> str:
 def trees() -> str:
     """Check every tree, mission and cell that ships."""
     from executive.app.catalogue import port_types, skills
-    from executive.engine.library import packaged_trees
-    from executive.engine.loader import check_files
+    from executive.engine.loading.library import packaged_trees
+    from executive.engine.loading.loader import check_files
 
     files = sorted(packaged_trees().rglob("*.yaml"))
     _, faults = check_files(files, skills=skills(), types=port_types())
@@ -198,7 +198,7 @@ def table_cell() -> str:
     """Open the cell of the untangling mission and take a picture."""
     from executive.app.catalogue import port_types, skills
     from executive.app.compose import open_cell
-    from executive.engine.loader import load_mission
+    from executive.engine.loading.loader import load_mission
     from perception.camera import Camera
 
     mission = load_mission("untangle", skills=skills(), types=port_types())

@@ -89,7 +89,9 @@ class Campaign:
 
     def _command(self, recording: Path, fault: str | None = None) -> list[str]:
         plan = self.plan
-        words = [*_COMMAND, plan.mission, "--seed", str(plan.seed), "--record", str(recording)]
+        words = [*_COMMAND, plan.mission, "--seed", str(plan.seed)]
+        # What a run that died has left there is repeated.
+        words += ["--record", str(recording), "--overwrite"]
         if plan.timeout_s is not None:
             words += ["--timeout", f"{plan.timeout_s:.9g}"]
         for assignment in plan.assignments:

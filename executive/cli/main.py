@@ -119,7 +119,7 @@ def _options(
 ) -> None:
     """Take the options that stand before a command."""
     if path:
-        from executive.engine.packages import put_first
+        from executive.engine.loading.packages import put_first
 
         put_first(path)
 

@@ -58,7 +58,7 @@ def _live() -> Path:
 
 
 def _runs(path: Path) -> bool:
-    from executive.engine.remote import NotRunningError, send
+    from executive.engine.running.remote import NotRunningError, send
 
     try:
         send(path, "state")

@@ -16,18 +16,18 @@ from executive.cli.console import chatter, print_error, results, stdout_kept_for
 from executive.cli.run_display import RunDisplay
 from executive.core.errors import CellwrightError, InputError
 from executive.core.world import Cell
-from executive.engine.control import EmergencyStopped, RunControl, stopped_by_signals
 from executive.engine.recording.messages import InjectedReport, RunReport, SlowNode
-from executive.engine.runner import MissionOutcome, one_line
+from executive.engine.running.control import EmergencyStopped, RunControl, stopped_by_signals
+from executive.engine.running.runner import MissionOutcome, one_line
 from executive.engine.ticks import RunObserver
 from executive.inspector.injected import injected_line
 from executive.inspector.views import OUTCOME_STYLES
 
 if TYPE_CHECKING:
     from executive.app.views import LiveView
-    from executive.engine.builder import BuiltTree
     from executive.engine.debugging.debugger import Debugger
-    from executive.engine.mission_run import RunPlan
+    from executive.engine.nodes.builder import BuiltTree
+    from executive.engine.running.mission_run import RunPlan
 
 _BAD_INPUT, _ERROR = 2, MissionOutcome.ERROR.exit_code
 _SLOW_SHOWN = 3
@@ -158,7 +158,7 @@ def _recorded_run(
     with ExitStack() as stack:
         prepared = prepare(control, console, stack)
         # Only now, with the input in order, is it worth loading what a run needs.
-        from executive.engine.mission_run import recorded_nodes, run_mission
+        from executive.engine.running.mission_run import recorded_nodes, run_mission
 
         tree, debugger = prepared.tree, _debugger(subject.debugging, prepared.tree, control)
         live = [stack.enter_context(closing(_live_view(console)))] if subject.view else []

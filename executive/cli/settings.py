@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from executive.core.errors import InputError
 from executive.core.registry import closest
-from executive.engine.sources import read_source
+from executive.engine.language.sources import read_source
 
 
 @dataclass(frozen=True, slots=True)

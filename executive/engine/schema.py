@@ -10,11 +10,11 @@ from typing import Any
 
 from pydantic.json_schema import models_json_schema
 
-from executive.engine.block_models import BLOCKS, LEAVES, NODE_SCHEMA, BlockBody
-from executive.engine.document import DOCUMENTS
-from executive.engine.fields import Model
-from executive.engine.library import packaged_trees
-from executive.engine.node_models import NodeModel
+from executive.engine.language.block_models import BLOCKS, LEAVES, NODE_SCHEMA, BlockBody
+from executive.engine.language.document import DOCUMENTS
+from executive.engine.language.fields import Model
+from executive.engine.language.node_models import NodeModel
+from executive.engine.loading.library import packaged_trees
 
 SCHEMA_FILE = Path("schema") / "tree.schema.json"
 

@@ -8,7 +8,7 @@ from itertools import product
 import numpy as np
 
 from executive.core.errors import InputError
-from executive.engine.expression import Expression, parse_expression
+from executive.engine.language.expression import Expression, parse_expression
 from executive.engine.ticks import NodeStatus
 from executive.inspector.deciding import SELECTORS, SEQUENCES, deciders
 from executive.inspector.index import FAILURE, SUCCESS

@@ -6,7 +6,7 @@ from functools import cached_property
 from pathlib import Path
 
 from executive.core.errors import InputError, RecordingError
-from executive.engine.expression import Expression, parse_expression
+from executive.engine.language.expression import Expression, parse_expression
 from executive.engine.recording.reader import Recording
 from executive.inspector.brief import brief
 from executive.inspector.index import RunIndex, WritePlace

@@ -9,16 +9,16 @@ from dataclasses import dataclass
 from executive.core.errors import InputError
 from executive.core.skill import REQUIRED
 from executive.engine.blackboard import Blackboard
-from executive.engine.block_models import ForEachBody
-from executive.engine.document import MissionDocument, TreeDocument
-from executive.engine.expression import Expression, parse_expression
-from executive.engine.node_models import SetNode, SkillNode, SubtreeNode, WhenNode
-from executive.engine.outline import NodeSpec, outline
+from executive.engine.language.block_models import ForEachBody
+from executive.engine.language.document import MissionDocument, TreeDocument
+from executive.engine.language.expression import Expression, parse_expression
+from executive.engine.language.node_models import SetNode, SkillNode, SubtreeNode, WhenNode
+from executive.engine.language.outline import NodeSpec, outline
+from executive.engine.language.scope import Scope
+from executive.engine.language.sources import read_source
+from executive.engine.language.values import Literal, Value, parse_value
+from executive.engine.loading.validation import validate
 from executive.engine.recording.messages import MissionHeader
-from executive.engine.scope import Scope
-from executive.engine.sources import read_source
-from executive.engine.validation import validate
-from executive.engine.values import Literal, Value, parse_value
 
 _MAX_DEPTH = 300
 

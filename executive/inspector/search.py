@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from executive.core.errors import InputError
-from executive.engine.expression import Expression, parse_expression
+from executive.engine.language.expression import Expression, parse_expression
 from executive.inspector.index import INVALID, STATUSES, RunIndex
 from executive.inspector.names import Names
 from executive.inspector.recorded_values import opened

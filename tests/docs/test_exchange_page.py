@@ -7,8 +7,8 @@ import pytest
 from typer.testing import CliRunner
 
 from executive.cli.main import app
-from executive.engine.block_models import KINDS
 from executive.engine.exchange.vocabulary import CONDITIONS, ENDINGS, PORTS, REFUSED
+from executive.engine.language.block_models import KINDS
 
 PAGE = (Path(__file__).parents[2] / "docs" / "exchange.md").read_text(encoding="utf-8")
 IMPORTED, EXPORTED = PAGE.split("## What is refused")

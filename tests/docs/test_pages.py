@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from executive.engine.block_models import KINDS
+from executive.engine.language.block_models import KINDS
 
 ROOT = Path(__file__).parents[2]
 CELLWRIGHT = Path(sys.executable).with_name("cellwright")

@@ -13,7 +13,7 @@ import umsgpack
 from groot_client import Client, hook, statuses_in, unlock
 
 from executive.engine.recording.reader import Recording
-from executive.engine.remote import NotRunningError, send
+from executive.engine.running.remote import NotRunningError, send
 from executive.inspector.groot.answers import Answers
 from executive.inspector.groot.run_view import RunView
 from executive.inspector.groot.server import GrootServer

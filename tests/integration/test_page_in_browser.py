@@ -8,7 +8,7 @@ from toy_runs import busy_tree, record
 
 from executive.engine.blackboard import Blackboard
 from executive.engine.recording.reader import Recording
-from executive.engine.remote import CommandServer
+from executive.engine.running.remote import CommandServer
 from executive.inspector.web.server import PageServer, application
 from executive.inspector.web.session import Session
 

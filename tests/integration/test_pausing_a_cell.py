@@ -7,11 +7,11 @@ import pytest
 
 from executive.app.catalogue import port_types, skills
 from executive.core.work import InlineWorker
-from executive.engine.builder import build
-from executive.engine.control import RunControl
-from executive.engine.loader import load_mission
+from executive.engine.loading.loader import load_mission
+from executive.engine.nodes.builder import build
 from executive.engine.recording.messages import PAUSES_TOPIC, PauseMessage
-from executive.engine.runner import MissionOutcome, Runner
+from executive.engine.running.control import RunControl
+from executive.engine.running.runner import MissionOutcome, Runner
 from robots.dual_arm import PlannedDualArm
 from robots.interfaces import TcpGoal
 from robots.motion.planner import PlannerSettings

@@ -10,7 +10,7 @@ from executive.core.registry import closest
 from executive.engine.checkpoints.messages import CHECKPOINTS_TOPIC, CheckpointMessage
 from executive.engine.recording.messages import MissionHeader
 from executive.engine.recording.reader import Recording
-from executive.engine.runner import MissionOutcome
+from executive.engine.running.runner import MissionOutcome
 
 GATE = ".checkpoint"
 """What the path of a gate adds to that of the node that it stands around."""

@@ -4,7 +4,7 @@ import difflib
 from collections.abc import Iterator, Mapping, Sequence
 
 from executive.core.errors import InputError
-from executive.engine.loader import Mission
+from executive.engine.loading.loader import Mission
 from executive.engine.recording.messages import MissionHeader, RecordedNode
 
 _LINES_SHOWN = 4

@@ -6,7 +6,7 @@ from typing import ClassVar
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
-from executive.engine.gated import Gated
+from executive.engine.nodes.gated import Gated
 
 Listener = Callable[[int], None]
 

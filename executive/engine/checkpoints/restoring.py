@@ -17,12 +17,12 @@ from executive.core.outcome import Outcome
 from executive.core.outcome import Status as SkillStatus
 from executive.core.world import Cell, RestorableCell
 from executive.engine.blackboard import Write
-from executive.engine.builder import BuiltTree, NodeInfo
 from executive.engine.checkpoints.chance import generator_state
 from executive.engine.checkpoints.choosing import CheckpointInfo
 from executive.engine.checkpoints.later import LaterCell
 from executive.engine.checkpoints.memories import recall
 from executive.engine.checkpoints.messages import CheckpointMessage
+from executive.engine.nodes.builder import BuiltTree, NodeInfo
 from executive.engine.recording.decoding import decode
 from executive.engine.recording.reader import Recording
 from executive.engine.ticks import NodeOutcome

@@ -7,7 +7,6 @@ from executive.core.errors import InputError
 from executive.core.registry import Registry
 from executive.core.skill import Skill
 from executive.core.world import Cell
-from executive.engine.builder import BuiltTree, build
 from executive.engine.checkpoints.choosing import CheckpointInfo
 from executive.engine.checkpoints.compatible import (
     changed_versions,
@@ -16,10 +15,11 @@ from executive.engine.checkpoints.compatible import (
 )
 from executive.engine.checkpoints.past import Resumption, past_of
 from executive.engine.checkpoints.restoring import restore_tree, restored_cell
-from executive.engine.loader import Mission, load_mission
-from executive.engine.mission_run import recorded_nodes, versions
+from executive.engine.loading.loader import Mission, load_mission
+from executive.engine.nodes.builder import BuiltTree, build
 from executive.engine.recording.messages import MissionHeader, ResumedFrom
 from executive.engine.recording.reader import Recording
+from executive.engine.running.mission_run import recorded_nodes, versions
 
 
 @dataclass(frozen=True, slots=True)

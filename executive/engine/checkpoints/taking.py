@@ -18,11 +18,11 @@ from executive.core.errors import DeviceError
 from executive.core.memento import Remembering
 from executive.core.world import Cell, RestorableCell
 from executive.engine.blackboard import Write
-from executive.engine.builder import BuiltTree, NodeInfo
 from executive.engine.checkpoints.chance import generator_words
 from executive.engine.checkpoints.memories import memory_of, remembers
 from executive.engine.checkpoints.messages import CHECKPOINTS_TOPIC, CheckpointMessage
 from executive.engine.checkpoints.past import Moment
+from executive.engine.nodes.builder import BuiltTree, NodeInfo
 from executive.engine.ticks import NodeOutcome, NodeStatus
 
 

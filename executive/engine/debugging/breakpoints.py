@@ -16,7 +16,7 @@ from enum import StrEnum
 
 from executive.core.errors import InputError
 from executive.core.registry import closest
-from executive.engine.expression import Expression, parse_expression
+from executive.engine.language.expression import Expression, parse_expression
 from executive.engine.line_files import parsed_lines
 
 _SHAPE = re.compile(

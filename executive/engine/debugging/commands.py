@@ -6,10 +6,10 @@ from typing import Any
 from pydantic import BaseModel, ConfigDict, TypeAdapter, ValidationError
 
 from executive.core.errors import InputError
-from executive.engine.control import RunControl
 from executive.engine.debugging.debugger import Debugger
 from executive.engine.debugging.stepping import Step
-from executive.engine.remote import Arguments, Command
+from executive.engine.running.control import RunControl
+from executive.engine.running.remote import Arguments, Command
 
 
 class _Asked(BaseModel):

@@ -19,16 +19,16 @@ from executive.core.outcome import RUNNING, Outcome, failure, success
 from executive.core.outcome import Status as Answer
 from executive.core.registry import closest
 from executive.core.world import StreamMessage
-from executive.engine.builder import BuiltTree
-from executive.engine.calls import TickCall
-from executive.engine.control import EmergencyStopped, RunControl
 from executive.engine.debugging.breakpoints import Breakpoint, Event, parse_breakpoint
 from executive.engine.debugging.names import BoardNames
 from executive.engine.debugging.stepping import Step, Stride, stride
-from executive.engine.expression import Expression
-from executive.engine.interception import Junction
-from executive.engine.interventions import InterventionLog
-from executive.engine.node_patterns import matching
+from executive.engine.language.expression import Expression
+from executive.engine.language.node_patterns import matching
+from executive.engine.nodes.builder import BuiltTree
+from executive.engine.nodes.calls import TickCall
+from executive.engine.nodes.interception import Junction
+from executive.engine.running.control import EmergencyStopped, RunControl
+from executive.engine.running.interventions import InterventionLog
 from executive.engine.ticks import Tick
 
 FORCED = "debug.forced"

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 
-from executive.engine.builder import NodeInfo
+from executive.engine.nodes.builder import NodeInfo
 
 
 class Step(StrEnum):

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Literal
 
-from executive.engine.block_models import BLOCKS
+from executive.engine.language.block_models import BLOCKS
 
 Skip = Literal["success", "failure"]
 """What stands for SKIPPED: what the parent makes of a child that it passes over."""

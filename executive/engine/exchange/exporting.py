@@ -7,7 +7,12 @@ from typing import Any, Final
 
 from executive.core.errors import DocumentError, Fault, InputError
 from executive.core.skill import Port, Skill, input_ports
-from executive.engine.block_models import (
+from executive.engine.exchange.cpptypes import cpp_type, read_literal, write_literal
+from executive.engine.exchange.dataflow import key_in
+from executive.engine.exchange.scripting import write_assignments, write_condition
+from executive.engine.exchange.vocabulary import COUNTERPARTS, LOOPS, SWITCHES
+from executive.engine.exchange.xmltext import NOT_XML, XmlElement, printable
+from executive.engine.language.block_models import (
     ForEachBody,
     ParallelBody,
     ReactiveSwitchBody,
@@ -16,13 +21,7 @@ from executive.engine.block_models import (
     RunOnceBody,
     TimeoutBody,
 )
-from executive.engine.exchange.cpptypes import cpp_type, read_literal, write_literal
-from executive.engine.exchange.dataflow import key_in
-from executive.engine.exchange.scripting import write_assignments, write_condition
-from executive.engine.exchange.vocabulary import COUNTERPARTS, LOOPS, SWITCHES
-from executive.engine.exchange.xmltext import NOT_XML, XmlElement, printable
-from executive.engine.loader import Program
-from executive.engine.node_models import (
+from executive.engine.language.node_models import (
     NodeModel,
     SetNode,
     SkillNode,
@@ -31,10 +30,11 @@ from executive.engine.node_models import (
     WaitNode,
     WhenNode,
 )
-from executive.engine.outline import NodeSpec, TreeSpec
-from executive.engine.porttypes import type_name
-from executive.engine.stubs import ScriptedSkill
-from executive.engine.values import Literal, key_of, parse_value
+from executive.engine.language.outline import NodeSpec, TreeSpec
+from executive.engine.language.porttypes import type_name
+from executive.engine.language.stubs import ScriptedSkill
+from executive.engine.language.values import Literal, key_of, parse_value
+from executive.engine.loading.loader import Program
 
 _REFUSED: Final[Mapping[str, str]] = {
     "cooldown": "has no counterpart there; try a skill that refuses to start so soon",

@@ -5,7 +5,7 @@ import re
 import unicodedata
 from typing import Final
 
-from executive.engine.evaluation import CONSTANTS, WRITTEN
+from executive.engine.language.evaluation import CONSTANTS, WRITTEN
 
 _RESERVED: Final = frozenset({*keyword.kwlist, *keyword.softkwlist, *CONSTANTS, WRITTEN})
 _WORD_ENDS: Final = re.compile(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")

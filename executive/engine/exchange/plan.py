@@ -22,7 +22,7 @@ from executive.engine.exchange.foreign import Direction, ForeignPort, ForeignTre
 from executive.engine.exchange.markup import Element
 from executive.engine.exchange.naming import Namer, our_name
 from executive.engine.exchange.vocabulary import PORTS, REFUSED
-from executive.engine.porttypes import type_name
+from executive.engine.language.porttypes import type_name
 
 
 @dataclass(frozen=True, slots=True)

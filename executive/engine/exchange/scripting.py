@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from typing import Final
 
 from executive.core.errors import InputError
-from executive.engine.expression import parse_expression
+from executive.engine.language.expression import parse_expression
 
 _COMPARISONS: Final[Mapping[type[ast.cmpop], str]] = {
     ast.Eq: "==",

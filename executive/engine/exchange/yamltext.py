@@ -5,8 +5,8 @@ import textwrap
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Final
 
-from executive.engine.block_models import BLOCKS, DecoratorBody
 from executive.engine.exchange.draft import Draft
+from executive.engine.language.block_models import BLOCKS, DecoratorBody
 
 WIDTH: Final = 100
 

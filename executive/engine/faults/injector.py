@@ -15,8 +15,6 @@ from executive.core.outcome import RUNNING, failure
 from executive.core.outcome import Status as Answer
 from executive.core.world import StreamMessage
 from executive.engine.blackboard import Write
-from executive.engine.builder import BuiltTree
-from executive.engine.calls import TickCall
 from executive.engine.faults.armed import Armed
 from executive.engine.faults.grammar import Injection, Kind
 from executive.engine.faults.key_types import (
@@ -27,12 +25,14 @@ from executive.engine.faults.key_types import (
     known_keys,
     wrong_values,
 )
-from executive.engine.interception import Junction
-from executive.engine.interventions import InterventionLog
-from executive.engine.loader import Program
-from executive.engine.node_patterns import matching
-from executive.engine.nodes import Leaf
+from executive.engine.language.node_patterns import matching
+from executive.engine.loading.loader import Program
+from executive.engine.nodes.builder import BuiltTree
+from executive.engine.nodes.calls import TickCall
+from executive.engine.nodes.interception import Junction
+from executive.engine.nodes.leaf import Leaf
 from executive.engine.recording.messages import InjectedReport
+from executive.engine.running.interventions import InterventionLog
 from executive.engine.ticks import RUNNER, Tick
 
 INJECTED = "injected.failure"

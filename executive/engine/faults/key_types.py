@@ -8,12 +8,12 @@ from typing import Any
 
 from executive.core.errors import Fault, InputError
 from executive.core.registry import closest
-from executive.engine.fitting import check, fit
-from executive.engine.keys import KeyTable
-from executive.engine.loader import Program
-from executive.engine.nodeports import PortTable
-from executive.engine.porttypes import accepts, type_name
-from executive.engine.wiring import wire
+from executive.engine.language.fitting import check, fit
+from executive.engine.language.porttypes import accepts, type_name
+from executive.engine.loading.keys import KeyTable
+from executive.engine.loading.loader import Program
+from executive.engine.loading.nodeports import PortTable
+from executive.engine.loading.wiring import wire
 
 
 @dataclass(frozen=True, slots=True)

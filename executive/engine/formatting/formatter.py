@@ -3,12 +3,12 @@
 from collections import Counter
 
 from executive.core.errors import DocumentError
-from executive.engine.comments import find_comments
 from executive.engine.formatting.items import BLANK, read_items
 from executive.engine.formatting.layout import Layout
 from executive.engine.formatting.order import find_places
-from executive.engine.sources import read_source
-from executive.engine.validation import validate
+from executive.engine.language.comments import find_comments
+from executive.engine.language.sources import read_source
+from executive.engine.loading.validation import validate
 
 
 def format_text(file: str, text: str) -> str:

@@ -6,8 +6,8 @@ from typing import Any
 
 import yaml
 
-from executive.engine.comments import Comment, find_comments, split_lines
-from executive.engine.sources import StrictLoader
+from executive.engine.language.comments import Comment, find_comments, split_lines
+from executive.engine.language.sources import StrictLoader
 
 BLANK = ""
 """Stands for a blank line among comments."""

@@ -6,7 +6,7 @@ from typing import Final
 from executive.engine.formatting.items import BLANK, Collection, Entry, Scalar
 from executive.engine.formatting.order import Places
 from executive.engine.formatting.scalars import block_lines, flow_text, key_text, line_text
-from executive.engine.sources import YamlPath
+from executive.engine.language.sources import YamlPath
 
 WIDTH: Final = 100
 _STEP: Final = 2

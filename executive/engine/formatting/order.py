@@ -4,11 +4,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final
 
-from executive.engine.block_models import BLOCKS, LEAVES, kind_of
-from executive.engine.document import DOCUMENTS
-from executive.engine.node_models import NodeModel
-from executive.engine.outline import node_paths, value_at
-from executive.engine.sources import YamlPath
+from executive.engine.language.block_models import BLOCKS, LEAVES, kind_of
+from executive.engine.language.document import DOCUMENTS
+from executive.engine.language.node_models import NodeModel
+from executive.engine.language.outline import node_paths, value_at
+from executive.engine.language.sources import YamlPath
 
 _PORT: Final = ("type", "unit", "default", "about")
 _ENDINGS: Final = ("on_start", "on_success", "on_failure", "on_halt", "finally")

@@ -7,7 +7,7 @@ from typing import Any, Final
 import yaml
 
 from executive.engine.formatting.items import Scalar
-from executive.engine.sources import StrictLoader
+from executive.engine.language.sources import StrictLoader
 
 _NULLS: Final = ("", "~")
 

@@ -7,9 +7,9 @@ from collections.abc import Callable, Iterable, Mapping
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Final
 
-from executive.engine.block_models import ObserveBody, ParallelBody
-from executive.engine.node_models import SubtreeNode
-from executive.engine.outline import NodeSpec
+from executive.engine.language.block_models import ObserveBody, ParallelBody
+from executive.engine.language.node_models import SubtreeNode
+from executive.engine.language.outline import NodeSpec
 
 if TYPE_CHECKING:
     from executive.engine.lint.subject import Subject

@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from executive.engine.outline import NodeSpec
+from executive.engine.language.outline import NodeSpec
 
 if TYPE_CHECKING:
     from executive.engine.lint.subject import Subject

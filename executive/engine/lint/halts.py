@@ -4,10 +4,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import pairwise
 
-from executive.engine.block_models import ParallelBody, TimeoutBody
+from executive.engine.language.block_models import ParallelBody, TimeoutBody
+from executive.engine.language.outline import NodeSpec
 from executive.engine.lint.outcomes import number, traits
 from executive.engine.lint.subject import Ancestors, Subject
-from executive.engine.outline import NodeSpec
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,13 +7,13 @@ from pathlib import Path
 from executive.core.errors import Fault
 from executive.core.registry import Registry, closest
 from executive.core.skill import Skill
+from executive.engine.language.sources import Source
 from executive.engine.lint.findings import Finding, PortSpot, Rule, Spot
 from executive.engine.lint.halts import Halts, find_halts
 from executive.engine.lint.rules import RULES, WAIVER_CODE, WAIVER_RULE
 from executive.engine.lint.subject import Subject
 from executive.engine.lint.waivers import FORM, Waiver, find_waivers
-from executive.engine.loader import Program, load_programs
-from executive.engine.sources import Source
+from executive.engine.loading.loader import Program, load_programs
 
 
 @dataclass(frozen=True, slots=True)

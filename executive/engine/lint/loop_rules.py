@@ -2,11 +2,11 @@
 
 from collections.abc import Iterator
 
-from executive.engine.block_models import CooldownBody, RetryBody, TimeoutBody
+from executive.engine.language.block_models import CooldownBody, RetryBody, TimeoutBody
+from executive.engine.language.outline import NodeSpec
 from executive.engine.lint.findings import Rule, Spot
 from executive.engine.lint.outcomes import number, traits
 from executive.engine.lint.subject import Subject
-from executive.engine.outline import NodeSpec
 
 
 def _unrepeatable(subject: Subject) -> Iterator[Spot]:

@@ -4,10 +4,10 @@ from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
 from executive.core.skill import Skill
+from executive.engine.language.outline import NodeSpec
 from executive.engine.lint.findings import Rule, Spot
 from executive.engine.lint.outcomes import constant, traits
 from executive.engine.lint.subject import Ancestors, Subject
-from executive.engine.outline import NodeSpec
 
 _SAID = {"succeed": "always fails", "fail": "always succeeds"}
 """What a child does that never gives the answer after which the next one is asked."""

@@ -13,10 +13,10 @@ from typing import Any, Final
 from executive.core.errors import InputError
 from executive.core.registry import Registry
 from executive.core.skill import Skill
-from executive.engine.block_models import CasesBody, ForEachBody, ParallelBody, RetryBody
-from executive.engine.expression import parse_expression
-from executive.engine.node_models import ChanceNode, NodeModel, WhenNode
-from executive.engine.outline import NodeSpec, TreeSpec
+from executive.engine.language.block_models import CasesBody, ForEachBody, ParallelBody, RetryBody
+from executive.engine.language.expression import parse_expression
+from executive.engine.language.node_models import ChanceNode, NodeModel, WhenNode
+from executive.engine.language.outline import NodeSpec, TreeSpec
 
 
 @dataclass(frozen=True, slots=True)

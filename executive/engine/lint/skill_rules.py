@@ -3,9 +3,9 @@
 from collections.abc import Iterator
 
 from executive.core.skill import Skill
+from executive.engine.language.stubs import ScriptedSkill
 from executive.engine.lint.findings import Rule, Spot
 from executive.engine.lint.subject import Subject
-from executive.engine.stubs import ScriptedSkill
 
 
 def _no_stop(subject: Subject) -> Iterator[Spot]:

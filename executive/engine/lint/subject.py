@@ -5,13 +5,13 @@ from collections.abc import Iterator, Mapping
 from functools import cached_property
 
 from executive.core.errors import Fault
-from executive.engine.document import MissionDocument
+from executive.engine.language.document import MissionDocument
+from executive.engine.language.outline import NodeSpec
 from executive.engine.lint.certain import Certain
 from executive.engine.lint.outcomes import Outcomes
-from executive.engine.loader import Program
-from executive.engine.nodeports import PortTable
-from executive.engine.outline import NodeSpec
-from executive.engine.wiring import Wiring, wire
+from executive.engine.loading.loader import Program
+from executive.engine.loading.nodeports import PortTable
+from executive.engine.loading.wiring import Wiring, wire
 
 Ancestors = tuple[NodeSpec, ...]
 

@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Final
 
-from executive.engine.comments import Comment, find_comments, split_lines
+from executive.engine.language.comments import Comment, find_comments, split_lines
 
 _MARK: Final = re.compile(r"#\s*lint\b")
 _FORM: Final = re.compile(r"#\s*lint:\s*allow\s+(\w+(?:\s*,\s*\w+)*)(?:\s+because\s+(\S.*))?$")

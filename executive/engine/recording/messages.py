@@ -12,7 +12,7 @@ from pydantic import BaseModel, ConfigDict, Field, JsonValue
 from executive.core.outcome import Status
 from executive.core.skill import PausePolicy
 from executive.engine.blackboard import Write
-from executive.engine.rate import RateReport
+from executive.engine.running.rate import RateReport
 from executive.engine.ticks import Halt, NodeFault, NodeOutcome, NodeStatus, SlowStep
 
 KEYFRAME_EVERY = 256

@@ -7,7 +7,7 @@ from functools import partial
 from typing import Final
 
 from executive.core.errors import CellwrightError, InputError, RecordingError
-from executive.engine.remote import send
+from executive.engine.running.remote import send
 from executive.inspector.groot.hooks import Hooks, Send
 from executive.inspector.groot.run_view import RunView
 from executive.inspector.groot.wire import (

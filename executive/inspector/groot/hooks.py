@@ -15,7 +15,7 @@ from typing import Annotated, Any, Final, Literal, Protocol, TypeVar
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
 
 from executive.core.errors import InputError
-from executive.engine.remote import NotRunningError
+from executive.engine.running.remote import NotRunningError
 from executive.inspector.groot.live_tree import LiveTree
 
 _BY: Final = "groot"

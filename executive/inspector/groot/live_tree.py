@@ -11,9 +11,9 @@ from typing import Final
 
 from executive.core.errors import InputError
 from executive.engine.blackboard import Blackboard
-from executive.engine.block_models import BLOCKS, DecoratorBody
 from executive.engine.exchange.vocabulary import COUNTERPARTS
 from executive.engine.exchange.xmltext import XmlElement, printable
+from executive.engine.language.block_models import BLOCKS, DecoratorBody
 from executive.engine.recording.messages import MissionHeader, RecordedNode
 from executive.inspector.groot.ports import Ports, ports_of
 from executive.inspector.groot.wire import MOST_NODES, TREE_ID_BYTES

@@ -4,10 +4,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Final
 
-from executive.engine.block_models import ParallelBody, RepeatBody, RetryBody, TimeoutBody
 from executive.engine.exchange.xmltext import printable
-from executive.engine.node_models import NodeModel, SetNode, SkillNode, WhenNode
-from executive.engine.values import key_of, parse_value
+from executive.engine.language.block_models import ParallelBody, RepeatBody, RetryBody, TimeoutBody
+from executive.engine.language.node_models import NodeModel, SetNode, SkillNode, WhenNode
+from executive.engine.language.values import key_of, parse_value
 from executive.inspector.rebuilt import WrittenNode
 
 _NOT_SHOWN: Final = frozenset({*NodeModel.model_fields, "children", "child", "cases", "default"})

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from executive.core.errors import InputError
-from executive.engine.expression import Expression, parse_expression
+from executive.engine.language.expression import Expression, parse_expression
 from executive.inspector.brief import brief
 from executive.inspector.past import PastRun, terms_of
 from executive.inspector.rebuilt import WrittenNode

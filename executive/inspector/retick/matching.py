@@ -3,7 +3,7 @@
 from collections import Counter
 from collections.abc import Mapping, Sequence
 
-from executive.engine.builder import NodeInfo
+from executive.engine.nodes.builder import NodeInfo
 from executive.inspector.brief import brief
 from executive.inspector.index import RunIndex
 from executive.inspector.rebuilt import Rebuilt, WrittenNode

@@ -14,14 +14,14 @@ from typing import Any
 from executive.core.errors import DocumentError, InputError
 from executive.core.registry import Registry, closest
 from executive.core.skill import Port, Skill
-from executive.engine.document import Document, MissionDocument, TreeDocument
-from executive.engine.library import Library, Shelf, search_folders
-from executive.engine.loader import Program, load_mission, load_program
-from executive.engine.node_models import SkillNode, SubtreeNode
-from executive.engine.outline import NodeSpec, TreeSpec
+from executive.engine.language.document import Document, MissionDocument, TreeDocument
+from executive.engine.language.node_models import SkillNode, SubtreeNode
+from executive.engine.language.outline import NodeSpec, TreeSpec
+from executive.engine.language.sources import read_source
+from executive.engine.loading.library import Library, Shelf, search_folders
+from executive.engine.loading.loader import Program, load_mission, load_program
+from executive.engine.loading.validation import validate
 from executive.engine.recording.messages import MissionHeader, SourceFile
-from executive.engine.sources import read_source
-from executive.engine.validation import validate
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -8,8 +8,8 @@ from typing import Any
 from executive.core.errors import InputError
 from executive.core.outcome import Status as Answer
 from executive.core.registry import closest
-from executive.engine.fitting import fit
-from executive.engine.sources import read_source
+from executive.engine.language.fitting import fit
+from executive.engine.language.sources import read_source
 from executive.inspector.past import PastRun
 from executive.inspector.retick.standins import Setting, WhatIf
 

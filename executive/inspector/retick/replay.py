@@ -9,10 +9,10 @@ from py_trees.behaviour import Behaviour
 from executive.core.clock import ManualClock
 from executive.core.errors import InputError, NodeError
 from executive.core.registry import Registry
-from executive.engine.builder import BuiltTree, build
-from executive.engine.probe import TreeProbe
-from executive.engine.skill_node import SkillBehaviour
-from executive.engine.stopping import stop_running
+from executive.engine.nodes.builder import BuiltTree, build
+from executive.engine.nodes.skill_node import SkillBehaviour
+from executive.engine.running.probe import TreeProbe
+from executive.engine.running.stopping import stop_running
 from executive.engine.ticks import NodeStatus, Tick
 from executive.inspector.index import RUNNING
 from executive.inspector.past import PastRun

@@ -11,10 +11,10 @@ from executive.core.errors import CellwrightError
 from executive.core.outcome import RUNNING, Outcome, failure, success
 from executive.core.outcome import Status as Answer
 from executive.engine.blackboard import Write
-from executive.engine.builder import BuiltTree
-from executive.engine.calls import TickCall
-from executive.engine.interception import Junction
-from executive.engine.skill_node import SkillBehaviour
+from executive.engine.nodes.builder import BuiltTree
+from executive.engine.nodes.calls import TickCall
+from executive.engine.nodes.interception import Junction
+from executive.engine.nodes.skill_node import SkillBehaviour
 from executive.engine.ticks import NodeStatus
 from executive.inspector.index import INVALID
 from executive.inspector.index import SUCCESS as SUCCEEDED

@@ -6,7 +6,7 @@ from typing import Any
 from textual import work
 
 from executive.core.errors import InputError
-from executive.engine.remote import send
+from executive.engine.running.remote import send
 from executive.inspector.terminal.keys import LIVE_ACTIONS
 from executive.inspector.terminal.moving import Moving
 from executive.inspector.terminal.overlays import Sure

@@ -15,7 +15,7 @@ from textual.worker import get_current_worker
 
 from executive.core.errors import CellwrightError, InputError
 from executive.engine.recording.reader import Recording
-from executive.engine.remote import send
+from executive.engine.running.remote import send
 from executive.inspector.report import mission_report
 from executive.inspector.report_text import report_text
 from executive.inspector.terminal import pages

@@ -19,7 +19,7 @@ from starlette.staticfiles import StaticFiles
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from executive.core.errors import CellwrightError, InputError
-from executive.engine.remote import NotRunningError, send
+from executive.engine.running.remote import NotRunningError, send
 from executive.inspector.web.access import AccessControl
 from executive.inspector.web.finding import Wish
 from executive.inspector.web.session import Session

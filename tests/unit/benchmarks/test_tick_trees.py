@@ -4,7 +4,7 @@ import pytest
 from py_trees.blackboard import Blackboard
 
 from benchmarks.tick_trees import Scripts, blocks, cell, chain, our_tree, their_tree
-from executive.engine.probe import TreeProbe
+from executive.engine.running.probe import TreeProbe
 
 
 @pytest.fixture(autouse=True)

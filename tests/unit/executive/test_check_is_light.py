@@ -9,7 +9,7 @@ import pytest
 
 from executive.core.errors import InputError
 from executive.core.registry import LazyRegistry
-from executive.engine.library import packaged_trees
+from executive.engine.loading.library import packaged_trees
 
 SCRIPT = """
 import json, sys
@@ -19,7 +19,7 @@ try:
     main()
 except SystemExit:
     pass
-from executive.engine.block_models import BLOCKS, LEAVES
+from executive.engine.language.block_models import BLOCKS, LEAVES
 built = [kind for kind, model in {**LEAVES, **BLOCKS}.items() if model.__pydantic_complete__]
 print(json.dumps([sorted(sys.modules), built]), file=sys.stderr)
 """

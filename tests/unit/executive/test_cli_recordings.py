@@ -11,7 +11,7 @@ from executive.cli import main
 from executive.cli.recordings import recording_path
 from executive.core.errors import InputError
 from executive.engine.recording.parts import part_path
-from executive.engine.remote import CommandServer
+from executive.engine.running.remote import CommandServer
 
 
 @pytest.fixture

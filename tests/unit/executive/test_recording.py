@@ -179,7 +179,7 @@ from pathlib import Path
 from toy_runs import Leaf, ToyCell, built, header_of
 from executive.core.outcome import failure
 from executive.engine.recording.writer import RecordingWriter
-from executive.engine.runner import Runner
+from executive.engine.running.runner import Runner
 
 count = 0
 def work():

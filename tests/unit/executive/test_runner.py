@@ -13,9 +13,9 @@ from toy_runs import Leaf, Ticks, ToyCell, built
 from executive.core.clock import ManualClock
 from executive.core.errors import NodeError
 from executive.core.outcome import failure
-from executive.engine.control import RunControl, stopped_by_signals
-from executive.engine.decorators import Timeout
-from executive.engine.runner import MissionOutcome, Runner
+from executive.engine.nodes.decorators import Timeout
+from executive.engine.running.control import RunControl, stopped_by_signals
+from executive.engine.running.runner import MissionOutcome, Runner
 from executive.engine.ticks import RUNNER, Halt, NodeStatus
 
 RUNNING, SUCCESS, FAILURE, INVALID = (

@@ -11,7 +11,7 @@ from starlette.websockets import WebSocketDisconnect
 from toy_runs import FAILURE, RUNNING, SUCCESS, Leaf, busy_tree, record
 
 from executive.engine.blackboard import Blackboard
-from executive.engine.remote import CommandServer
+from executive.engine.running.remote import CommandServer
 from executive.engine.ticks import NodeStatus
 from executive.inspector.web.activity import Activity, Code
 from executive.inspector.web.server import application

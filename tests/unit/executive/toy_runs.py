@@ -13,6 +13,7 @@ from executive.core.clock import ManualClock, MissionClock
 from executive.core.outcome import Outcome, failure
 from executive.core.world import StreamMessage
 from executive.engine.blackboard import Blackboard
+from executive.engine.nodes.supervision import Supervision
 from executive.engine.recording.actions import ActionLog
 from executive.engine.recording.messages import (
     MissionHeader,
@@ -22,8 +23,7 @@ from executive.engine.recording.messages import (
 )
 from executive.engine.recording.reader import Recording
 from executive.engine.recording.writer import RecordingWriter
-from executive.engine.runner import Runner
-from executive.engine.supervision import Supervision
+from executive.engine.running.runner import Runner
 
 RUNNING, SUCCESS, FAILURE = Status.RUNNING, Status.SUCCESS, Status.FAILURE
 

@@ -15,13 +15,13 @@ from executive.core.outcome import failure, success
 from executive.core.registry import Registry
 from executive.core.skill import In, Port, Skill, SkillRun
 from executive.core.world import StreamMessage
-from executive.engine.builder import build
 from executive.engine.checkpoints.choosing import chosen
 from executive.engine.checkpoints.resuming import Consent, recorded_mission, take_up
-from executive.engine.control import RunControl
-from executive.engine.loader import load_mission
-from executive.engine.mission_run import RunPlan, run_mission
+from executive.engine.loading.loader import load_mission
+from executive.engine.nodes.builder import build
 from executive.engine.recording.reader import Recording
+from executive.engine.running.control import RunControl
+from executive.engine.running.mission_run import RunPlan, run_mission
 
 
 @dataclass(frozen=True)

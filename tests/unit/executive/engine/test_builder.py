@@ -4,7 +4,7 @@ import pytest
 
 from executive.core.clock import ManualClock
 from executive.core.errors import DocumentError, InputError
-from executive.engine.builder import build
+from executive.engine.nodes.builder import build
 
 WORK = "{skill: work, in: {label: a, ticks: 3}}"
 

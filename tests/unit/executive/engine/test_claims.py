@@ -3,7 +3,7 @@
 import pytest
 
 from executive.core.errors import ClaimError
-from executive.engine.claims import Claims
+from executive.engine.nodes.claims import Claims
 
 GRABS = """
     parallel:

@@ -8,10 +8,10 @@ from toy_language import Bench
 from toy_runs import ToyCell
 
 from executive.core.errors import InputError
-from executive.engine.control import RunControl
 from executive.engine.debugging.debugger import Debugger
 from executive.engine.debugging.stepping import Step
-from executive.engine.runner import Runner
+from executive.engine.running.control import RunControl
+from executive.engine.running.runner import Runner
 
 TREE = """
 sequence:

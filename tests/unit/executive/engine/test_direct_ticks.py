@@ -24,14 +24,14 @@ from py_trees.decorators import Retry as ForeignRetry
 
 from executive.core.clock import ManualClock
 from executive.engine.blackboard import Blackboard
-from executive.engine.choosing import IfThenElse
-from executive.engine.decorators import Cooldown, Repeat, Retry, Timeout
-from executive.engine.gated import Gated
-from executive.engine.parallel import Parallel
-from executive.engine.probe import TreeProbe
-from executive.engine.stopping import stop_running
-from executive.engine.supervision import Supervision
-from executive.engine.ticking import NODE_STATUS, DirectTicks
+from executive.engine.nodes.choosing import IfThenElse
+from executive.engine.nodes.decorators import Cooldown, Repeat, Retry, Timeout
+from executive.engine.nodes.gated import Gated
+from executive.engine.nodes.parallel import Parallel
+from executive.engine.nodes.supervision import Supervision
+from executive.engine.nodes.ticking import NODE_STATUS, DirectTicks
+from executive.engine.running.probe import TreeProbe
+from executive.engine.running.stopping import stop_running
 from executive.engine.ticks import NodeStatus
 
 RUNNING, SUCCESS, FAILURE, INVALID = (

@@ -4,10 +4,10 @@ import pytest
 from toy_language import toy_skills, toy_types
 
 from executive.core.errors import DocumentError
-from executive.engine.library import Library, Shelf
-from executive.engine.loader import check_files, load_mission
-from executive.engine.sources import read_source
-from executive.engine.validation import validate
+from executive.engine.language.sources import read_source
+from executive.engine.loading.library import Library, Shelf
+from executive.engine.loading.loader import check_files, load_mission
+from executive.engine.loading.validation import validate
 
 HEAD = "format: 1\ntree: t\n"
 

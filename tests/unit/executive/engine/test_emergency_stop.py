@@ -7,8 +7,8 @@ from toy_missions import Rehearsal
 from toy_runs import RUNNING, Leaf, Ticks, ToyCell, built
 
 from executive.core.errors import DeviceError
-from executive.engine.control import RunControl, stopped_by_signals
-from executive.engine.runner import MissionOutcome, Runner
+from executive.engine.running.control import RunControl, stopped_by_signals
+from executive.engine.running.runner import MissionOutcome, Runner
 
 
 class WatchedCell(ToyCell):

@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 from toy_language import Colour, Part
 
 from executive.core.errors import InputError
-from executive.engine.expression import parse_expression
+from executive.engine.language.expression import parse_expression
 
 VALUES = {
     "n": 3,

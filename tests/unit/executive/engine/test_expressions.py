@@ -8,9 +8,9 @@ from hypothesis import strategies as st
 from toy_language import Colour, Part
 
 from executive.core.errors import InputError
-from executive.engine.expression import parse_expression
-from executive.engine.inference import infer
-from executive.engine.porttypes import type_name
+from executive.engine.language.expression import parse_expression
+from executive.engine.language.porttypes import type_name
+from executive.engine.loading.inference import infer
 
 PART = Part(0.5, Colour.RED, (1, 2))
 KEYS = {

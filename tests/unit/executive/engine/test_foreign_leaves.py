@@ -11,9 +11,9 @@ from toy_language import Colour, Journal, toy_skills, toy_types
 
 from executive.core.errors import DocumentError
 from executive.core.skill import input_ports
-from executive.engine.builder import build
-from executive.engine.foreign import skill_from_behaviour
-from executive.engine.loader import load_program
+from executive.engine.loading.loader import load_program
+from executive.engine.nodes.builder import build
+from executive.engine.nodes.foreign import skill_from_behaviour
 
 
 class Scale(PortsMixin, Behaviour):

@@ -11,14 +11,14 @@ from typer.testing import CliRunner
 
 from executive.cli.main import app
 from executive.core.errors import DocumentError
-from executive.engine.block_models import BLOCKS, KINDS, LEAVES
-from executive.engine.comments import find_comments
 from executive.engine.formatting.formatter import format_text
 from executive.engine.formatting.order import node_order
-from executive.engine.library import packaged_trees
-from executive.engine.node_models import NodeModel
-from executive.engine.sources import read_source
-from executive.engine.validation import validate
+from executive.engine.language.block_models import BLOCKS, KINDS, LEAVES
+from executive.engine.language.comments import find_comments
+from executive.engine.language.node_models import NodeModel
+from executive.engine.language.sources import read_source
+from executive.engine.loading.library import packaged_trees
+from executive.engine.loading.validation import validate
 
 MESSY = """\
 # At the head.

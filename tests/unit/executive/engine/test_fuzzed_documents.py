@@ -10,8 +10,8 @@ from toy_language import toy_skills, toy_types
 from benchmarks.fuzz import Bench
 from benchmarks.random_documents import ANYTHING, INNER, ROOTS, WORDS, document, spoiled
 from executive.core.errors import InputError
-from executive.engine.block_models import KINDS
-from executive.engine.loader import load_program
+from executive.engine.language.block_models import KINDS
+from executive.engine.loading.loader import load_program
 
 
 def is_refused(folder, document):

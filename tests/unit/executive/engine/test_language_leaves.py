@@ -4,9 +4,9 @@ import pytest
 from toy_language import Journal
 
 from executive.core.clock import ManualClock
-from executive.engine.builder import build
-from executive.engine.counts import NodeCounts
-from executive.engine.probe import TreeProbe
+from executive.engine.language.counts import NodeCounts
+from executive.engine.nodes.builder import build
+from executive.engine.running.probe import TreeProbe
 from executive.engine.ticks import NodeStatus
 
 

@@ -6,8 +6,8 @@ import pytest
 from typer.testing import CliRunner
 
 from executive.cli.main import app
-from executive.engine.library import packaged_trees
 from executive.engine.lint.rules import RULES
+from executive.engine.loading.library import packaged_trees
 
 LOOSE = """\
 format: 1

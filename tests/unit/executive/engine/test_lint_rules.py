@@ -8,7 +8,7 @@ from toy_language import toy_skills, toy_types
 
 from executive.core.outcome import failure, success
 from executive.core.skill import Port, Skill
-from executive.engine.block_models import BLOCKS, KINDS
+from executive.engine.language.block_models import BLOCKS, KINDS
 from executive.engine.lint.certain import COMBINED
 from executive.engine.lint.linter import lint_files
 from executive.engine.lint.outcomes import TRAITS

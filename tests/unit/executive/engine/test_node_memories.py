@@ -6,10 +6,10 @@ import pytest
 from killed_toys import WorldCell, skills, types, write_mission
 from py_trees.behaviour import Behaviour
 
-from executive.engine.block_models import BLOCKS, LEAVES
-from executive.engine.builder import build
 from executive.engine.checkpoints.memories import Child, memory_of, recall
-from executive.engine.loader import load_mission
+from executive.engine.language.block_models import BLOCKS, LEAVES
+from executive.engine.loading.loader import load_mission
+from executive.engine.nodes.builder import build
 
 # The kinds that remember something only while they run are caught in the middle of it.
 NODES = {

@@ -10,8 +10,8 @@ from toy_language import toy_skills, toy_types
 
 from executive.core.errors import InputError
 from executive.core.registry import Registry
-from executive.engine.loader import load_program
-from executive.engine.packages import (
+from executive.engine.loading.loader import load_program
+from executive.engine.loading.packages import (
     PATH_VARIABLE,
     add_packaged_skills,
     add_packaged_types,

@@ -7,8 +7,8 @@ from toy_missions import AtTick, Rehearsal
 
 from executive.core.clock import ManualClock, MissionClock
 from executive.core.skill import PausePolicy
-from executive.engine.control import RunControl
-from executive.engine.runner import MissionOutcome
+from executive.engine.running.control import RunControl
+from executive.engine.running.runner import MissionOutcome
 from executive.engine.ticks import NodeStatus
 
 

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from toy_language import Colour, Part, toy_types
 
 from executive.core.errors import InputError
-from executive.engine.fitting import check, fit
-from executive.engine.porttypes import accepts, parse_type, type_name
+from executive.engine.language.fitting import check, fit
+from executive.engine.language.porttypes import accepts, parse_type, type_name
 
 
 @runtime_checkable

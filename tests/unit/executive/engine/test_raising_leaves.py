@@ -3,8 +3,8 @@
 import pytest
 from toy_missions import Rehearsal
 
-from executive.engine.runner import MissionOutcome
-from executive.engine.supervision import RAISED
+from executive.engine.nodes.supervision import RAISED
+from executive.engine.running.runner import MissionOutcome
 
 TRY = "{selector: [{skill: breaks, in: {after: 1}}, {skill: swing, in: {steps: 2}}]}"
 

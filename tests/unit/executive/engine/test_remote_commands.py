@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from executive.core.errors import InputError
-from executive.engine.remote import CommandServer, NotRunningError, send, socket_path
+from executive.engine.running.remote import CommandServer, NotRunningError, send, socket_path
 
 
 @pytest.fixture

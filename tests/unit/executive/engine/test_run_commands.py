@@ -6,7 +6,7 @@ from toy_language import Bench
 
 from executive.core.errors import InputError
 from executive.engine.debugging.commands import RunCommands
-from executive.engine.remote import CommandServer, send
+from executive.engine.running.remote import CommandServer, send
 
 
 @pytest.fixture

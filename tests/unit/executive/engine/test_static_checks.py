@@ -4,7 +4,7 @@ import pytest
 from toy_language import toy_skills, toy_types
 
 from executive.core.errors import DocumentError
-from executive.engine.loader import load_program
+from executive.engine.loading.loader import load_program
 
 FIND = "{skill: find, out: {part: $p, distance: $d}}"
 

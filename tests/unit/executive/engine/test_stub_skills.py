@@ -10,8 +10,8 @@ from executive.app.dry_cell import DryCell
 from executive.cli.main import app
 from executive.core.clock import ManualClock
 from executive.core.errors import DocumentError, InputError
-from executive.engine.builder import build
-from executive.engine.loader import check_files, load_program
+from executive.engine.loading.loader import check_files, load_program
+from executive.engine.nodes.builder import build
 
 HANDS = {
     "format": 1,

@@ -4,7 +4,7 @@ import pytest
 from toy_language import toy_skills, toy_types
 
 from executive.core.errors import InputError
-from executive.engine.loader import load_program
+from executive.engine.loading.loader import load_program
 
 INNER = """
 format: 1

@@ -8,8 +8,8 @@ from toy_language import toy_skills
 from typer.testing import CliRunner
 
 from executive.cli.main import app
-from executive.engine.block_models import KINDS
-from executive.engine.library import packaged_trees
+from executive.engine.language.block_models import KINDS
+from executive.engine.loading.library import packaged_trees
 from executive.engine.schema import SCHEMA_FILE, schema_text
 
 SKILLS = {"cmd_check": "skills", "cmd_tree": "skills", "cmd_skills": "shipped_skills"}

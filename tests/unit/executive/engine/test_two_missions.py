@@ -9,8 +9,8 @@ from py_trees.common import Status
 from py_trees.ports import PortInformation, PortsMixin
 from toy_missions import Rehearsal, skills_of_missions
 
-from executive.engine.foreign import skill_from_behaviour
-from executive.engine.runner import MissionOutcome
+from executive.engine.nodes.foreign import skill_from_behaviour
+from executive.engine.running.runner import MissionOutcome
 
 ROUNDS = 30
 

@@ -3,8 +3,8 @@
 import pytest
 
 from executive.core.errors import InputError
-from executive.engine.expression import parse_expression
-from executive.engine.units import unit_of
+from executive.engine.language.expression import parse_expression
+from executive.engine.language.units import unit_of
 
 UNITS = {"d": "m", "e": "m", "w": "mm", "t": "s", "parts": "kg"}
 

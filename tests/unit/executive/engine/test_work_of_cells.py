@@ -6,7 +6,7 @@ from pydantic import ValidationError
 from executive.app.compose import workers
 from executive.core.process_work import ProcessWorker
 from executive.core.work import InlineWorker, ThreadWorker
-from executive.engine.document import CellDocument
+from executive.engine.language.document import CellDocument
 
 CELL = {"format": 1, "cell": "c", "world": "w"}
 

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from executive.engine.sources import read_source
+from executive.engine.language.sources import read_source
 
 
 def messages(text):

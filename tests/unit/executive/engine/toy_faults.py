@@ -5,12 +5,12 @@ from pathlib import Path
 
 from executive.app.compose import open_cell
 from executive.core.registry import Registry
-from executive.engine.builder import build
-from executive.engine.control import RunControl
 from executive.engine.faults.grammar import parse_injection
-from executive.engine.loader import load_mission
-from executive.engine.mission_run import RunPlan, run_mission
+from executive.engine.loading.loader import load_mission
+from executive.engine.nodes.builder import build
 from executive.engine.recording.reader import Recording
+from executive.engine.running.control import RunControl
+from executive.engine.running.mission_run import RunPlan, run_mission
 
 STUBS = """
 format: 1

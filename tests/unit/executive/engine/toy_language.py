@@ -11,8 +11,8 @@ from executive.core.errors import DocumentError
 from executive.core.outcome import failure, success
 from executive.core.registry import Registry
 from executive.core.skill import In, Port, Skill, SkillRun
-from executive.engine.builder import build
-from executive.engine.loader import load_program
+from executive.engine.loading.loader import load_program
+from executive.engine.nodes.builder import build
 
 
 class Colour(StrEnum):

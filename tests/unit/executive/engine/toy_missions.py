@@ -8,10 +8,10 @@ from toy_runs import Ticks, ToyCell
 
 from executive.core.outcome import failure, success
 from executive.core.skill import PausePolicy, Port, Skill, SkillRun
-from executive.engine.builder import build
-from executive.engine.loader import load_mission
+from executive.engine.loading.loader import load_mission
+from executive.engine.nodes.builder import build
 from executive.engine.recording.messages import PAUSES_TOPIC, PauseMessage
-from executive.engine.runner import Runner
+from executive.engine.running.runner import Runner
 
 CELL = """
 format: 1

@@ -14,17 +14,17 @@ from toy_runs import ToyCell
 
 from executive.core.clock import MonotonicClock
 from executive.core.errors import InputError
-from executive.engine.builder import build
 from executive.engine.checkpoints.choosing import checkpoints
 from executive.engine.checkpoints.resuming import Consent
-from executive.engine.control import RunControl
 from executive.engine.debugging.debugger import Debugger
 from executive.engine.faults.grammar import parse_injection
-from executive.engine.loader import load_mission
-from executive.engine.mission_run import RunPlan, run_mission
+from executive.engine.loading.loader import load_mission
+from executive.engine.nodes.builder import build
 from executive.engine.recording.parts import parts_of
 from executive.engine.recording.reader import Recording
 from executive.engine.recording.writer import RecordingWriter
+from executive.engine.running.control import RunControl
+from executive.engine.running.mission_run import RunPlan, run_mission
 from executive.inspector.past import PastRun
 from executive.inspector.retick.retick import retick
 

@@ -8,7 +8,7 @@ import time
 import pytest
 from inspector_pilot import ROOT, looking, recorded, rows_of, screen_text, settle
 
-from executive.engine.remote import CommandServer
+from executive.engine.running.remote import CommandServer
 from executive.inspector.terminal.app import InspectorApp
 from executive.inspector.terminal.board import BoardRows
 from executive.inspector.terminal.keys import GROUPS, TABS, bindings

@@ -13,9 +13,8 @@ from executive.core.clock import ManualClock
 from executive.core.outcome import failure, success
 from executive.core.registry import Registry
 from executive.core.skill import In, Port, Skill, SkillRun
-from executive.engine.builder import build
-from executive.engine.loader import load_program
-from executive.engine.mission_run import recorded_nodes
+from executive.engine.loading.loader import load_program
+from executive.engine.nodes.builder import build
 from executive.engine.recording.messages import (
     MissionHeader,
     ResultMessage,
@@ -24,7 +23,8 @@ from executive.engine.recording.messages import (
 )
 from executive.engine.recording.reader import Recording
 from executive.engine.recording.writer import RecordingWriter
-from executive.engine.runner import Runner
+from executive.engine.running.mission_run import recorded_nodes
+from executive.engine.running.runner import Runner
 from executive.inspector.past import PastRun
 
 

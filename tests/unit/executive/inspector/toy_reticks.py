@@ -12,13 +12,13 @@ from benchmarks.random_documents import INNER, document
 from executive.core.clock import ManualClock
 from executive.core.outcome import failure, success
 from executive.core.skill import In, Port, Skill, SkillRun
-from executive.engine.builder import build
-from executive.engine.loader import load_program
-from executive.engine.mission_run import recorded_nodes
+from executive.engine.loading.loader import load_program
+from executive.engine.nodes.builder import build
 from executive.engine.recording.messages import MissionHeader, SourceFile
 from executive.engine.recording.reader import Recording
 from executive.engine.recording.writer import RecordingWriter
-from executive.engine.runner import Runner
+from executive.engine.running.mission_run import recorded_nodes
+from executive.engine.running.runner import Runner
 from executive.inspector.past import PastRun
 
 TICK_HZ = 10.0

@@ -6,10 +6,10 @@ from pathlib import Path
 
 from executive.core.clock import ManualClock
 from executive.core.registry import Registry
-from executive.engine.builder import build
 from executive.engine.exchange.importing import ImportOptions, import_text
-from executive.engine.loader import load_program
-from executive.engine.sources import read_source
+from executive.engine.language.sources import read_source
+from executive.engine.loading.loader import load_program
+from executive.engine.nodes.builder import build
 
 NOTHING = Registry("skill")
 TYPES = Registry("type")

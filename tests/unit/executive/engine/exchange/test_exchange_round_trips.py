@@ -14,8 +14,8 @@ from executive.engine.exchange.importing import import_text
 from executive.engine.exchange.scripting import write_condition
 from executive.engine.exchange.scripts import Vocabulary, read_script
 from executive.engine.exchange.yamltext import flow
-from executive.engine.expression import parse_expression
-from executive.engine.loader import load_program
+from executive.engine.language.expression import parse_expression
+from executive.engine.loading.loader import load_program
 
 HANDS = {
     "format": 1,

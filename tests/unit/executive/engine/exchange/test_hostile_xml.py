@@ -13,7 +13,7 @@ from executive.engine.exchange.importing import ImportOptions, import_file, impo
 from executive.engine.exchange.naming import Namer
 from executive.engine.exchange.scripts import Vocabulary, read_script
 from executive.engine.exchange.vocabulary import CONDITIONS, ENDINGS, PORTS, REFUSED
-from executive.engine.loader import load_program
+from executive.engine.loading.loader import load_program
 
 LAUGHS = """<?xml version="1.0"?><!DOCTYPE lolz [<!ENTITY a "ha"><!ENTITY b "&a;&a;&a;&a;">
 <!ENTITY c "&b;&b;&b;&b;">]><root BTCPP_format="4"><BehaviorTree ID="&c;"/></root>"""

@@ -10,7 +10,7 @@ from executive.core.registry import Registry
 from executive.core.skill import Port, Skill, SkillRun
 from executive.engine.exchange.importing import ImportOptions, import_file, import_text
 from executive.engine.exchange.vocabulary import REFUSED
-from executive.engine.loader import load_program
+from executive.engine.loading.loader import load_program
 
 TWO = "<AlwaysSuccess/><AlwaysFailure/>"
 

@@ -1,0 +1,1 @@
+"""What a document says: its models, expressions, types, units and names."""

@@ -1,0 +1,1 @@
+"""The nodes that tick, and how they are built and ticked."""

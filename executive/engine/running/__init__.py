@@ -1,0 +1,1 @@
+"""A mission from its first tick to its last."""
