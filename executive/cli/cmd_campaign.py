@@ -101,11 +101,14 @@ def faults(
 @contextmanager
 def _terminated_like_interrupted() -> Iterator[None]:
     """End the runs that are under way when this process is told to end, too."""
-    before = signal.signal(signal.SIGTERM, signal.default_int_handler)
+    # SIGINT too: a shell lets its background processes ignore it.
+    numbers = (signal.SIGINT, signal.SIGTERM)
+    before = [signal.signal(number, signal.default_int_handler) for number in numbers]
     try:
         yield
     finally:
-        signal.signal(signal.SIGTERM, before)
+        for number, handler in zip(numbers, before, strict=True):
+            signal.signal(number, handler)
 
 
 def _check(mission: str) -> None:

@@ -46,12 +46,19 @@ class GrootServer:
             told_s = 0.0
             while not self._stopping:
                 if self._requests.poll(_POLL_MS):
-                    request = self._requests.recv_multipart()
-                    self._requests.send_multipart(self._answers.reply(request))
+                    self._answer()
                 if time.monotonic() - told_s >= _POLL_MS / 1000:
                     told_s = time.monotonic()
                     for news in self._answers.tend():
                         self._news.send_multipart(news)
+
+    def _answer(self) -> None:
+        try:
+            # What was announced may be dropped as garbage, and then there is nothing to wait for.
+            request = self._requests.recv_multipart(zmq.NOBLOCK)
+        except zmq.Again:
+            return
+        self._requests.send_multipart(self._answers.reply(request))
 
     def stop(self) -> None:
         """End `serve` soon; may be called from any thread."""
