@@ -30,7 +30,8 @@ class GrootServer:
         self._answers = answers
         self._stopping = False
         self._context = zmq.Context()
-        self._requests = self._socket(zmq.REP)
+        # Not REP: its lockstep of requests and replies is brought out of step by garbage.
+        self._requests = self._socket(zmq.ROUTER)
         self._news = self._socket(zmq.PUB)
         self._requests.setsockopt(zmq.MAXMSGSIZE, _LARGEST_REQUEST_BYTES)
         try:
@@ -55,10 +56,11 @@ class GrootServer:
     def _answer(self) -> None:
         try:
             # What was announced may be dropped as garbage, and then there is nothing to wait for.
-            request = self._requests.recv_multipart(zmq.NOBLOCK)
+            client, *rest = self._requests.recv_multipart(zmq.NOBLOCK)
         except zmq.Again:
             return
-        self._requests.send_multipart(self._answers.reply(request))
+        if len(rest) > 1 and rest[0] == b"":  # as REQ sockets ask
+            self._requests.send_multipart([client, b"", *self._answers.reply(rest[1:])])
 
     def stop(self) -> None:
         """End `serve` soon; may be called from any thread."""
