@@ -33,7 +33,7 @@ FAST_HZ = 100.0
 
 def run(quick: bool, seed: int) -> Sequence[Row]:
     """Open an hour, jump about in it, and watch runs that go on."""
-    pairs, opens = (4, 2) if quick else (20, 10)
+    pairs, opens = (4, 2) if quick else (8, 10)
     with tempfile.TemporaryDirectory() as folder:
         hour = Path(folder) / "hour.mcap"
         _record(hour, HOUR_TICKS, seed)
@@ -106,8 +106,10 @@ def _scrubbing(path: Path, seed: int, times: int) -> list[Row]:
     session = Session(path)
     numbers = np.random.default_rng(seed).integers(0, len(session.recording), times)
     ticks_ms, lanes_ms = [], []
-    while not session.complete:  # a second or two after the page was opened
+    progress = session.progress()
+    while progress["in_lanes"] != progress["ticks"]:  # a second or two after it was opened
         time.sleep(0.05)
+        progress = session.progress()
     with _served(session) as address:
         for number in numbers.tolist():
             ticks_ms.append(_fetched_ms(f"{address}api/tick/{number}"))
