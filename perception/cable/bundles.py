@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.spatial import cKDTree
 
-from perception.cable.tracers.centre_line import arc_lengths, resample
+from perception.cable.polyline import arc_lengths, resample
 from perception.cable.types import Points
 
 # Centre lines nearer than this lie upon each other; side by side they are a cable width apart.

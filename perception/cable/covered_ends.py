@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from perception.cable.polyline import arc_lengths
 from perception.cable.types import Endpoint, Points, Trace
 
 # From where the cable's own width ends to the tip of a connector.
@@ -20,7 +21,7 @@ def connector_px(end: Endpoint) -> Points:
 def crossed_ends(trace: Trace, endpoints: tuple[Endpoint, ...]) -> tuple[bool, ...]:
     """Say of each end whether a strand of a trace lies across its connector."""
     line = trace.points_px
-    arcs = _arcs(line)
+    arcs = arc_lengths(line)
     # Whichever end of the trace is nearer leads to the connector, and does not cross it.
     starts = [bool(np.argmin(_gaps(line[[0, -1]], end.position_px)) == 0) for end in endpoints]
     return tuple(
@@ -37,7 +38,7 @@ def ends_are_clear(path_px: Points) -> bool:
     Args:
         path_px: Centre line from end to end, shape (N, 2).
     """
-    arcs = _arcs(path_px)
+    arcs = arc_lengths(path_px)
     if arcs[-1] <= 2.0 * (CONNECTOR_PX + LEAD_PX):
         return True
     return _leads_clear(path_px, arcs) and _leads_clear(path_px[::-1], arcs[-1] - arcs[::-1])
@@ -58,10 +59,6 @@ def _is_crossed(line: Points, arcs: Points, axis: Points) -> bool:
 def _axis(start_px: Points, outwards: Points) -> Points:
     axis: Points = start_px + np.arange(0.0, CONNECTOR_PX, 2.0)[:, None] * outwards
     return axis
-
-
-def _arcs(line: Points) -> Points:
-    return np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(line, axis=0), axis=1))]
 
 
 def _gaps(points: Points, point: Points) -> Points:

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from perception.cable.polyline import arc_lengths, point_at, resample
 from perception.cable.topology.curve import Strand, StrandCrossing, intersections
-from perception.cable.tracers.centre_line import arc_lengths, point_at, resample
 from perception.cable.types import Crossing, Points, Trace
 
 SPACING_PX = 3.0

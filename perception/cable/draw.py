@@ -8,7 +8,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from perception.cable.tracers.centre_line import arc_lengths, point_at
+from perception.cable.polyline import arc_lengths, point_at
 from perception.cable.types import CableScene, Crossing, Endpoint, Knot, Points, Trace
 from perception.camera import GreyImage
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from perception.cable.graph import Edge, SkeletonGraph, usual_radius
 from perception.cable.mask import CableMask
-from perception.cable.tracers.centre_line import arc_lengths, point_at
+from perception.cable.polyline import arc_lengths, point_at
 from perception.cable.types import Endpoint, Points
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from perception.cable.tracers.centre_line import resample
+from perception.cable.polyline import resample
 
 Floats = NDArray[np.float64]
 

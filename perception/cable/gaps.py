@@ -11,7 +11,7 @@ import numpy as np
 
 from perception.cable.graph import SkeletonGraph, usual_radius
 from perception.cable.mask import CableMask, radii
-from perception.cable.tracers.centre_line import arc_lengths
+from perception.cable.polyline import arc_lengths
 from perception.cable.types import Points
 
 

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from perception.cable.polyline import arc_lengths, point_at
 from perception.cable.types import Crossing, Knot, Points, Trace
 
 STRIDE_PX = 16.0
@@ -63,7 +64,7 @@ def cage_sites(trace: Trace, crossings: Sequence[Crossing], knot: Knot) -> tuple
 def sites_between(trace: Trace, begin: float, end: float) -> tuple[GraspSite, ...]:
     """Return sites every `STRIDE_PX` between two arc positions, both ends left out."""
     path = trace.points_px
-    arcs_px = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(path, axis=0), axis=1))])
+    arcs_px = arc_lengths(path)
     length_px = float(arcs_px[-1])
     wanted_px = np.arange(begin * length_px + STRIDE_PX, end * length_px, STRIDE_PX)
     return tuple(_site(path, arcs_px, at_px) for at_px in wanted_px)
@@ -73,13 +74,9 @@ def _under_arcs(crossings: Sequence[Crossing], trace: int) -> list[float]:
     return [crossing.arc_under for crossing in crossings if crossing.trace_under == trace]
 
 
-def _at(path: Points, arcs_px: Points, at_px: float) -> Points:
-    return np.array([np.interp(at_px, arcs_px, path[:, axis]) for axis in (0, 1)])
-
-
 def _site(path: Points, arcs_px: Points, at_px: float) -> GraspSite:
-    point_px = _at(path, arcs_px, at_px)
-    chord = _at(path, arcs_px, at_px + 8.0) - _at(path, arcs_px, at_px - 8.0)
+    point_px = point_at(path, arcs_px, at_px)
+    chord = point_at(path, arcs_px, at_px + 8.0) - point_at(path, arcs_px, at_px - 8.0)
     direction = chord / max(float(np.linalg.norm(chord)), 1e-9)
     others = path[np.abs(arcs_px - at_px) > OWN_PIECE_PX] - point_px
     along_px = np.abs(others @ direction)

@@ -12,6 +12,7 @@ import numpy as np
 
 from perception.cable.crossings import strand_of
 from perception.cable.grasp_points import GraspConfig, choose_grasps
+from perception.cable.polyline import arc_lengths, point_at
 from perception.cable.topology import (
     Knottedness,
     Strand,
@@ -20,7 +21,6 @@ from perception.cable.topology import (
     close_over,
 )
 from perception.cable.topology.rule import Visit, cancel, closing_visit
-from perception.cable.tracers.centre_line import arc_lengths, point_at
 from perception.cable.types import Crossing, Knot, Points, Trace
 
 # A piece is cut this far beyond its first and last crossing.

@@ -15,7 +15,7 @@ from perception.cable.endpoints import EndpointConfig, find_endpoints
 from perception.cable.graph import Edge, SkeletonGraph, arms_of, usual_radius
 from perception.cable.mask import CableMask
 from perception.cable.plugs import Plug
-from perception.cable.tracers.centre_line import arc_lengths, point_at
+from perception.cable.polyline import arc_lengths, point_at
 from perception.cable.types import Endpoint, Points
 
 # How sure it is that a connector is the end of a cable.

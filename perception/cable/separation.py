@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from perception.cable.classifiers.edges import EdgeClassifier
 from perception.cable.mask import CableMask
 from perception.cable.observation import observe
-from perception.cable.tracers.centre_line import arc_lengths, point_at
+from perception.cable.polyline import arc_lengths, point_at
 from perception.cable.tracers.skeleton import SkeletonTracer
 from perception.cable.types import Crossing, Points, Trace
 from perception.camera import GreyImage

@@ -4,7 +4,8 @@ import cv2
 import numpy as np
 
 from perception.cable.mask import CableMask, find_mask
-from perception.cable.tracers.centre_line import arc_lengths, point_at, tangents
+from perception.cable.polyline import arc_lengths, point_at
+from perception.cable.tracers.centre_line import tangents
 from perception.cable.types import Points
 from perception.camera import GreyImage
 

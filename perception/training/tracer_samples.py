@@ -6,7 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.ndimage import gaussian_filter1d
 
-from perception.cable.tracers.centre_line import arc_lengths, point_at, tangents
+from perception.cable.polyline import arc_lengths, point_at
+from perception.cable.tracers.centre_line import tangents
 from perception.models import tracer_crop
 from perception.models.frames import Crop, Floats, ScaledImage, scale_image, turned_frame
 from perception.models.tracer_crop import make_crop

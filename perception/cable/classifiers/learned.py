@@ -7,7 +7,7 @@ import numpy as np
 import torch
 
 from perception.cable.crossings import CrossingSite, decide, find_sites
-from perception.cable.tracers.centre_line import arc_lengths, point_at
+from perception.cable.polyline import arc_lengths, point_at
 from perception.cable.types import Crossing, Points, Trace
 from perception.cable.width import mask_under
 from perception.camera import GreyImage

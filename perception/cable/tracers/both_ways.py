@@ -11,7 +11,7 @@ from scipy.special import expit, logit
 
 from perception.cable.following import followed_share
 from perception.cable.interfaces import Tracer
-from perception.cable.tracers.centre_line import arc_lengths, point_at
+from perception.cable.polyline import arc_lengths, point_at
 from perception.cable.types import Endpoint, Points, Trace, TraceEnd
 from perception.camera import GreyImage
 

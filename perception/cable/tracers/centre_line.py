@@ -3,28 +3,8 @@
 import numpy as np
 from scipy.ndimage import gaussian_filter1d
 
+from perception.cable.polyline import SPACING_PX, arc_lengths, point_at, resample
 from perception.cable.types import Points
-
-SPACING_PX = 2.0
-
-
-def arc_lengths(points: Points) -> Points:
-    """Return the length of a polyline up to each of its points, shape (N,)."""
-    steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
-    lengths: Points = np.concatenate([[0.0], np.cumsum(steps)])
-    return lengths
-
-
-def point_at(points: Points, arcs: Points, at: Points | float) -> Points:
-    """Return points at arc lengths `at`, shape (K, 2), or (2,) for one."""
-    return np.stack([np.interp(at, arcs, points[:, axis]) for axis in (0, 1)], axis=-1)
-
-
-def resample(points: Points, spacing_px: float = SPACING_PX) -> Points:
-    """Return a polyline with the same ends and nearly equal steps, shape (N, 2), N >= 2."""
-    arcs = arc_lengths(points)
-    count = max(round(arcs[-1] / spacing_px), 1)
-    return point_at(points, arcs, np.linspace(0.0, arcs[-1], count + 1))
 
 
 def smooth(points: Points, sigma_px: float) -> Points:

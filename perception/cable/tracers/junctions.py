@@ -15,7 +15,7 @@ import networkx as nx
 import numpy as np
 
 from perception.cable.graph import Arm, Edge, SkeletonGraph, usual_radius
-from perception.cable.tracers.centre_line import arc_lengths, point_at
+from perception.cable.polyline import arc_lengths, point_at
 from perception.cable.types import Points
 
 

@@ -11,7 +11,7 @@ from pathlib import Path as FilePath
 
 import numpy as np
 
-from perception.cable.tracers.centre_line import arc_lengths, point_at
+from perception.cable.polyline import arc_lengths, point_at
 from perception.cable.tracers.modes import find_modes
 from perception.cable.tracers.paths import Ends, Path, checked
 from perception.cable.tracers.rivals import RivalConfig, reduced

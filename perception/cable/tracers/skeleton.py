@@ -16,13 +16,8 @@ from perception.cable.endpoints import leaves_view
 from perception.cable.graph import Arm, SkeletonGraph
 from perception.cable.mask import CableMask
 from perception.cable.observation import Observation, observe
-from perception.cable.tracers.centre_line import (
-    arc_lengths,
-    bend_between,
-    point_at,
-    resample,
-    smooth,
-)
+from perception.cable.polyline import arc_lengths, point_at, resample
+from perception.cable.tracers.centre_line import bend_between, smooth
 from perception.cable.tracers.junctions import JunctionConfig, Junctions, find_junctions
 from perception.cable.tracers.transitions import (
     Threading,

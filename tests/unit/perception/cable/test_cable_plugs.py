@@ -8,7 +8,7 @@ from perception.cable.graph import Edge, SkeletonGraph, arms_of
 from perception.cable.observation import observe
 from perception.cable.plug_ends import with_plugs
 from perception.cable.plugs import Plug, find_plugs
-from perception.cable.tracers.centre_line import arc_lengths
+from perception.cable.polyline import arc_lengths
 from perception.cable.types import Trace, TraceEnd
 from perception.cable.vision import ClassicCableVision
 from perception.cable.wholeness import wholeness
