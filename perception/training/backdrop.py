@@ -1,4 +1,4 @@
-"""What lies under and beside the cables: cloth, folds, clutter, robot parts, connectors."""
+"""What lies under and beside the cables: cloth, folds, clutter, robot parts."""
 
 import cv2
 import numpy as np
@@ -93,26 +93,3 @@ def _draw_part(rng: np.random.Generator, picture: Picture, width_px: float) -> N
             shade,
             int(rng.choice([-1, 2])),
         )
-
-
-def draw_connectors(
-    rng: np.random.Generator, picture: Picture, strand: Floats, width: float, brightness: float
-) -> None:
-    """Draw a plug at each end of a strand, in place; lengths in pixels of the picture."""
-    for tip, inner in ((strand[0], strand[4]), (strand[-1], strand[-5])):
-        if rng.random() < 0.15:
-            continue
-        out = tip[:2] - inner[:2]
-        out /= max(float(np.linalg.norm(out)), 1e-9)
-        side = np.array([-out[1], out[0]])
-        at = tip[:2]
-        for _ in range(int(rng.integers(1, 4))):
-            half = side * width * rng.uniform(0.5, 1.3)
-            length = out * width * rng.uniform(0.8, 2.5)
-            narrow = half * rng.uniform(0.6, 1.0)
-            corners = np.array([at - half, at + half, at + length + narrow, at + length - narrow])
-            grey = float(np.clip(brightness + rng.normal(0.0, 45.0), 0.0, 255.0))
-            cv2.fillConvexPoly(
-                picture, np.round(corners * 8).astype(np.int32), grey, cv2.LINE_AA, 3
-            )
-            at = at + length

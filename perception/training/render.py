@@ -9,10 +9,19 @@ from numpy.typing import NDArray
 
 from perception.camera import GreyImage
 from perception.training import backdrop, rasterise
+from perception.training.connectors import (
+    Connector,
+    draw_connector,
+    draw_distractors,
+    draw_up_connectors,
+)
 from perception.training.waypoints import resample
 
 Floats = NDArray[np.float64]
 Picture = NDArray[np.float32]
+
+# Share of scenes with things on the table that are neither cable nor connector.
+DISTRACTED = 0.3
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,22 +142,29 @@ def render(
     width_px: float,
     size_px: tuple[int, int],
     look: Look,
-) -> GreyImage:
-    """Return an image of strands (x, y, z) [px] on a table that fills the image."""
+) -> tuple[GreyImage, tuple[Connector, ...]]:
+    """Return an image of strands (x, y, z) [px] on a table, and the connectors that it shows."""
     # Thin strands are drawn at twice the size, for smooth borders.
     scale = 2 if width_px < 8.0 else 1
     size = (size_px[0] * scale, size_px[1] * scale)
     width = width_px * scale
     table = backdrop.draw_table(rng, size_px, look.table, width_px)
     picture: Picture = cv2.resize(table, size[::-1]).astype(np.float32)
+    connectors: list[Connector] = []
+    if look.connectors:
+        for k, (strand, cable) in enumerate(zip(strands, look.cables, strict=True)):
+            connectors += draw_up_connectors(rng, k, strand, width_px, cable.brightness)
+    if rng.random() < DISTRACTED:
+        draw_distractors(rng, picture, width, look.cables[0].brightness)
+    for connector in (each for each in connectors if each.covered):
+        draw_connector(picture, connector, scale)
     middle = np.array([0.5 * (scale - 1), 0.5 * (scale - 1), 0.0])
     fine = [resample(strand * scale + middle, width / 6.0) for strand in strands]
     _draw_strands(picture, fine, width, look)
-    if look.connectors:
-        for strand, cable in zip(fine, look.cables, strict=True):
-            backdrop.draw_connectors(rng, picture, strand, width, cable.brightness)
+    for connector in (each for each in connectors if not each.covered):
+        draw_connector(picture, connector, scale)
     small = cv2.resize(picture, size_px[::-1], interpolation=cv2.INTER_AREA)
-    return photograph(rng, small.astype(np.float32), look)
+    return photograph(rng, small.astype(np.float32), look), tuple(connectors)
 
 
 def _draw_strands(picture: Picture, strands: Sequence[Floats], width: float, look: Look) -> None:

@@ -9,6 +9,7 @@ from scipy.ndimage import gaussian_filter1d
 
 from perception.camera import GreyImage
 from perception.training import contact, curves
+from perception.training.connectors import Connector
 from perception.training.render import draw_look, render
 from perception.training.waypoints import SPACING
 
@@ -60,12 +61,14 @@ class Scene:
         width_px: Width of the cables.
         cables: Their centre lines.
         crossings: Where strands cross; those at nearly one height are left out.
+        connectors: Plugs and adapters at the ends of the cables.
     """
 
     image: GreyImage
     width_px: float
     cables: tuple[SceneCable, ...]
     crossings: tuple[SceneCrossing, ...]
+    connectors: tuple[Connector, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,7 +126,7 @@ def lay_scene(
         np.column_stack([part[:, :2] * width_px + origin_px, part[:, 2] * width_px])
         for part in parts
     ]
-    image = render(rng, strands, width_px, size_px, look)
+    image, connectors = render(rng, strands, width_px, size_px, look)
     return Scene(
         image,
         width_px,
@@ -132,6 +135,7 @@ def lay_scene(
             for strand, part in zip(strands, parts, strict=True)
         ),
         _true_crossings(nodes, cable),
+        connectors,
     )
 
 
