@@ -7,100 +7,35 @@ are photographs; these are drawn by what also draws the learned tracer's trainin
 lines of another making.
 """
 
-from collections.abc import Sequence
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 
-from perception.training import contact
-from perception.training.scenes import Scene, SceneConfig, lay_scene
-from perception.training.waypoints import through
+from benchmarks.laying import CONFIG, GROWTHS, HIGH, LOW, WIDTH_M, Core, fits, grown, laid, turned
+from perception.training.scenes import Scene, lay_scene
 from simulation.cable.knots import TEMPLATES
 
 Floats = NDArray[np.float64]
 
-# Lengths in cable widths of 6.6 mm.
-WIDTH_M = 0.0066
+# Lengths in cable widths.
 LENGTHS = (3.0 / WIDTH_M, 3.0 / WIDTH_M, 2.0 / WIDTH_M)
 KNOT_WIDTHS = (0.05 / WIDTH_M, 0.10 / WIDTH_M)
-CONFIG = SceneConfig(
-    extent=180.0, size_px=(773, 1032), narrowest_px=5.0, widest_px=5.6, bright=True
-)
-# What of the square of that extent the camera sees, less a margin.
-LOW, HIGH = np.array([6.0, 28.0]), np.array([174.0, 152.0])
-STEP = 3.0
-# Typical curvature of cable on a table, and how fast it changes; its least radius.
-CURVATURE, MEMORY, TIGHTEST = 1.0 / 18.0, 0.8, 5.0
-BORDER = 22.0
-TRIES, GROWTHS = 400, 40
-# No strand is nearer than this to the last nodes of a cable; crossings are this far apart.
-END_NODES, CLEARANCE = 14, 3.5
-SEMI_PLANAR = 0.8
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Core:
-    """A piece of one cable that is laid first.
-
-    Attributes:
-        points: Waypoints, shape (N, 2).
-        over: Whether the cable is on top at each of its visits in order: of crossings with
-            itself, or where `other` is given of those with another core.
-        other: Which core that is.
-    """
-
-    points: Floats
-    over: tuple[bool, ...] = ()
-    other: int | None = None
+TRIES = 400
 
 
 def draw_tier(rng: np.random.Generator, tier: str) -> Scene:
     """Draw a scene of tier B1, B2 or B3."""
     draw = {"B1": _dropped, "B2": _knotted, "B3": _tied}[tier]
     for _ in range(TRIES):
-        cores = draw(rng)
-        lines = _laid(rng, cores)
-        known = _prescribed(cores, lines) if lines is not None else None
-        if lines is not None and known is not None:
-            return lay_scene(rng, lines, CONFIG, known)
+        found = laid(rng, draw(rng), LENGTHS)
+        if found is not None:
+            return lay_scene(rng, found[0], CONFIG, found[1])
     raise RuntimeError(f"no scene of tier {tier} in {TRIES} tries")
-
-
-def _laid(rng: np.random.Generator, cores: Sequence[Core]) -> list[Floats] | None:
-    """Return cables with these cores, ends in sight; None where some end finds no room."""
-    lines: list[Floats] = []
-    for core, length in zip(cores, LENGTHS, strict=True):
-        grown = (_grown(rng, core.points, length) for _ in range(GROWTHS))
-        line = next((line for line in grown if _fits(line, lines)), None)
-        if line is None:
-            return None
-        lines.append(line)
-    return lines
-
-
-def _fits(line: Floats, others: Sequence[Floats]) -> bool:
-    """Say whether a cable lies in view, and neither hides ends nor has hidden ends itself."""
-    if (line < LOW - 3.0).any() or (line > HIGH + 3.0).any():
-        return False
-    rest = np.vstack([line[END_NODES + 12 : -END_NODES - 12], *others])
-    own = np.vstack([line[:END_NODES], line[-END_NODES:]])
-    ends = [np.vstack([other[:END_NODES], other[-END_NODES:]]) for other in others]
-    if not _apart(own, rest) or not all(_apart(end, line) for end in ends):
-        return False
-    return _is_semi_planar([*others, line])
-
-
-def _apart(ends: Floats, rest: Floats) -> bool:
-    gaps, _ = cKDTree(rest).query(ends)
-    return bool(gaps.min() > CLEARANCE)
 
 
 def _dropped(rng: np.random.Generator) -> list[Core]:
     straight = np.array([[-2.0, 0.0], [0.0, 0.0], [2.0, 0.0]])
     places = rng.uniform(LOW + 30.0, HIGH - 30.0, (3, 2))
-    return [Core(place + _turned(rng, straight)) for place in places]
+    return [Core(place + turned(rng, straight)) for place in places]
 
 
 def _knotted(rng: np.random.Generator) -> list[Core]:
@@ -111,7 +46,7 @@ def _knotted(rng: np.random.Generator) -> list[Core]:
         size = rng.uniform(*KNOT_WIDTHS) / template.diameter
         points = np.array(template.corners) * size * ((1.0, -1.0) if mirrored else (1.0, 1.0))
         over = tuple(on_top != mirrored for on_top in template.over)
-        cores.append(Core(place + _turned(rng, points), over))
+        cores.append(Core(place + turned(rng, points), over))
     return cores
 
 
@@ -125,10 +60,10 @@ BIGHT_OVER = (True, False, True, True, False, True)
 def _tied(rng: np.random.Generator) -> list[Core]:
     size = rng.uniform(*KNOT_WIDTHS) / 3.0
     place = rng.uniform(LOW + 45.0, HIGH - 45.0)
-    both = _turned(rng, np.vstack([BIGHT, -BIGHT]) * size)
+    both = turned(rng, np.vstack([BIGHT, -BIGHT]) * size)
     first, second = place + both[: len(BIGHT)], place + both[len(BIGHT) :]
-    grown = (_grown(rng, first, LENGTHS[0]) for _ in range(GROWTHS))
-    leg = next((line for line in grown if _fits(line, [])), first)
+    tries = (grown(rng, first, LENGTHS[0]) for _ in range(GROWTHS))
+    leg = next((line for line in tries if fits(line, [])), first)
     # The third cable winds round the first one, away from the knot.
     begin = int(rng.uniform(0.08, 0.25) * len(leg))
     half_turns = int(rng.integers(2, 5))
@@ -151,111 +86,3 @@ def _wound(along: Floats, half_turns: int) -> Floats:
     ends = np.maximum(np.abs(np.linspace(-1.0, 1.0, len(along))) - 0.8, 0.0) * 20.0
     wound: Floats = (along + normal * (wave + np.sign(wave) * ends)[:, None])[::4]
     return wound
-
-
-def _turned(rng: np.random.Generator, points: Floats) -> Floats:
-    turn = rng.uniform(0.0, 2.0 * np.pi)
-    rotation = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
-    turned: Floats = points @ rotation.T
-    return turned
-
-
-def _grown(rng: np.random.Generator, core: Floats, length: float) -> Floats:
-    """Return a cable of a length, grown from its core to both sides, as nodes."""
-    there = float(np.linalg.norm(np.diff(core, axis=0), axis=1).sum())
-    if there >= length - 2.0 * STEP:
-        return core
-    left = length - there
-    first = rng.uniform(0.3, 0.7) * left
-    head, tail = _walk(rng, core[::-1], first), _walk(rng, core, left - first)
-    return through(np.vstack([head[::-1], core, tail]), 0.8)
-
-
-def _walk(rng: np.random.Generator, core: Floats, length: float) -> Floats:
-    """Return waypoints that lead on from the last point of a core, and stay in the area."""
-    here, curvature = core[-1], 0.0
-    heading = float(np.arctan2(*(core[-1] - core[-2])[::-1]))
-    points = []
-    for _ in range(max(int(length / STEP), 1)):
-        noise = rng.normal(0.0, CURVATURE * np.sqrt(1.0 - MEMORY**2))
-        curvature = MEMORY * curvature + noise + _inwards(here, heading)
-        curvature = float(np.clip(curvature, -1.0 / TIGHTEST, 1.0 / TIGHTEST))
-        heading += curvature * STEP
-        here = here + STEP * np.array([np.cos(heading), np.sin(heading)])
-        points.append(here)
-    return np.array(points)
-
-
-def _inwards(here: Floats, heading: float) -> float:
-    """Return how much to turn more, so as not to leave the area."""
-    excess = np.clip((LOW + BORDER - here) / BORDER, 0.0, 1.0)
-    excess -= np.clip((here - HIGH + BORDER) / BORDER, 0.0, 1.0)
-    pull = float(np.linalg.norm(excess))
-    if pull == 0.0:
-        return 0.0
-    wanted = float(np.arctan2(excess[1], excess[0]))
-    off = float((wanted - heading + np.pi) % (2.0 * np.pi) - np.pi)
-    return 0.25 * pull * float(np.sign(off)) * min(abs(off), 1.0)
-
-
-@dataclass(frozen=True, slots=True)
-class _Known:
-    """What is prescribed: for each pair of nodes, whether the earlier one is on top."""
-
-    pairs: dict[tuple[float, float], bool]
-
-    def __call__(self, first: float, second: float) -> bool | None:
-        return self.pairs.get((first, second))
-
-
-def _prescribed(cores: Sequence[Core], lines: Sequence[Floats]) -> _Known | None:
-    """Return over and under of all cores; None where lines do not cross as their cores should."""
-    xy, cable = _numbered(lines)
-    starts = np.searchsorted(cable, np.arange(len(lines)))
-    found = contact.crossings(xy, cable)
-    spans = [
-        starts[k] + _span(core, line)
-        for k, (core, line) in enumerate(zip(cores, lines, strict=True))
-    ]
-    pairs: dict[tuple[float, float], bool] = {}
-    for number, core in enumerate(cores):
-        if not core.over:
-            continue
-        other = number if core.other is None else core.other
-        mine = [pair for pair in found if _joins(pair, spans[number], spans[other])]
-        visits = sorted(
-            (float(at), (float(a), float(b)))
-            for a, b in mine
-            for at in ((a, b) if other == number else ((a,) if number < other else (b,)))
-        )
-        if len(visits) != len(core.over):
-            return None
-        for (at, pair), on_top in zip(visits, core.over, strict=True):
-            pairs[pair] = on_top if at == pair[0] else not on_top
-    return _Known(pairs)
-
-
-def _is_semi_planar(lines: Sequence[Floats]) -> bool:
-    """Say whether no more than two strands lie upon each other anywhere."""
-    places = np.vstack(lines)[contact.crossings(*_numbered(lines))[:, 0].astype(int)]
-    return len(places) < 2 or not cKDTree(places).query_pairs(SEMI_PLANAR)
-
-
-def _numbered(lines: Sequence[Floats]) -> tuple[Floats, NDArray[np.int64]]:
-    """Return the nodes of all cables, and which cable each belongs to."""
-    return np.vstack(lines), np.repeat(np.arange(len(lines)), [len(line) for line in lines])
-
-
-def _span(core: Core, line: Floats) -> NDArray[np.int64]:
-    """Return the nodes at which a core begins and ends in its line."""
-    ends = [int(np.linalg.norm(line - end, axis=1).argmin()) for end in core.points[[0, -1]]]
-    return np.array(sorted(ends))
-
-
-def _joins(pair: Floats, one: NDArray[np.int64], other: NDArray[np.int64]) -> bool:
-    """Say whether a crossing lies within both spans, either way round."""
-    a, b = pair
-    return bool(
-        (one[0] <= a <= one[1] and other[0] <= b <= other[1])
-        or (one[0] <= b <= one[1] and other[0] <= a <= other[1])
-    )
