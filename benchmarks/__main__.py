@@ -15,6 +15,7 @@ BENCHMARKS = {
     "cable-physics": ("benchmarks.cable_physics", "speed of the cable beside PyBullet; knots kept"),
     "ticks": ("benchmarks.ticks", "speed of ticks beside py_trees; cost of a recording"),
     "fuzz": ("benchmarks.fuzz", "random documents: faults, never tracebacks; valid trees run"),
+    "foreign": ("benchmarks.foreign", "cables as renderers show them that training never saw"),
     "inspecting": (
         "benchmarks.inspecting",
         "an hour of recording in the page; cost of watching",
