@@ -169,7 +169,8 @@ def _pattern(rng: np.random.Generator, grey: float) -> NDArray[np.uint8]:
         strength = sigma * rng.uniform(0.0, 14.0)
         cloth += gaussian_filter(rng.normal(size=cloth.shape), sigma) * strength
     threads = np.sin(np.arange(1024) * rng.uniform(0.3, 1.5)) * rng.uniform(0.0, 8.0)
-    return np.clip(cloth + threads[:, None], 0.0, 255.0).astype(np.uint8)
+    pattern: NDArray[np.uint8] = np.clip(cloth + threads[:, None], 0.0, 255.0).astype(np.uint8)
+    return pattern
 
 
 def _add_chain(client: Any, line_m: Floats, look: _Look) -> None:
