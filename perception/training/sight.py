@@ -41,6 +41,7 @@ class SightTask:
         assert bias is not None
         with torch.no_grad():
             bias[: len(sight_net.HEATS)] = -4.0
+            bias[sight_net.LOG_WIDTH], bias[sight_net.LOG_RADIUS] = 2.0, 3.5
         return network
 
     def batches(self, seed: int, first: int, stride: int, size: int) -> Iterator[Batch]:

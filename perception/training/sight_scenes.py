@@ -24,7 +24,7 @@ EMPTY = 0.05
 # Nodes are half a cable width apart: this many give the direction of an end.
 DIRECTION_NODES = 6
 # Crossings this near to each other [cable widths] and at least so many are a tangle.
-LINK_WIDTHS, LEAST_CROSSINGS = 3.0, 3
+LINK_WIDTHS, LEAST_CROSSINGS = 4.5, 3
 WIDEST_TANGLE = 14.0
 # A strand this much higher [cable radii] hides an end.
 HIDES = 0.4
