@@ -8,7 +8,7 @@ import typer
 from rich.text import Text
 
 from executive.cli.console import chatter
-from executive.core.errors import InputError, RecordingError
+from executive.core.errors import InputError, recording_named_by_the_user
 
 
 def groot(
@@ -41,10 +41,8 @@ def groot(
 
     if speed is not None and not speed > 0.0:
         raise InputError(f"--speed {speed:g}: expected a factor above 0")
-    try:
+    with recording_named_by_the_user():
         view = RunView(recording, speed=speed)
-    except RecordingError as error:
-        raise InputError(str(error)) from error  # the user named the wrong file
     server = GrootServer(Answers(view, steering=is_loopback(host)), host, port)
     console = chatter()
     state = " (live)" if view.live else ""

@@ -13,10 +13,11 @@ from rich.text import Text
 from executive.cli.console import chatter, results
 from executive.cli.inspect_page import serve_page
 from executive.cli.recordings import RunArgument
-from executive.core.errors import InputError, RecordingError
+from executive.core.errors import InputError
 from executive.engine.recording.reader import Recording
 from executive.inspector.changes import Change, matching_nodes, status_changes
 from executive.inspector.documents import change_document, tick_document
+from executive.inspector.past import open_with_ticks
 from executive.inspector.views import ICONS, summary_view, tick_view
 
 
@@ -57,7 +58,7 @@ def inspect(
     if not (plain or as_json or changes) and sys.stdin.isatty() and sys.stdout.isatty():
         _look(recording, tick, node)
         return
-    run = _opened(recording)
+    run = open_with_ticks(recording)
     nodes = matching_nodes(run.header.nodes, node)
     console = results(colour=not plain)
     if changes:
@@ -83,16 +84,6 @@ def _look(path: Path, tick: int | None, node: str | None) -> None:
     wrong = InspectorApp(path, start).run()
     if wrong is not None:
         raise InputError(wrong)
-
-
-def _opened(path: Path) -> Recording:
-    try:
-        run = Recording.open(path)
-    except RecordingError as error:
-        raise InputError(str(error)) from error  # the user named the wrong file
-    if len(run) == 0:
-        raise InputError(f"{path}: holds no tick; the run was killed before the first one")
-    return run
 
 
 def _tick_number(run: Recording, asked: int | None) -> int:

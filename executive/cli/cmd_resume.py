@@ -24,7 +24,7 @@ from executive.cli.reported_run import (
     require_free,
     run_and_exit,
 )
-from executive.core.errors import InputError, RecordingError
+from executive.core.errors import InputError, recording_named_by_the_user
 from executive.engine.checkpoints.choosing import CheckpointInfo, checkpoints, chosen
 from executive.engine.recording.reader import Recording
 from executive.engine.running.control import RunControl
@@ -92,10 +92,8 @@ def resume(
 
 
 def _opened(recording: Path) -> Recording:
-    try:
+    with recording_named_by_the_user():
         return Recording.open(recording)
-    except RecordingError as error:
-        raise InputError(str(error)) from error  # the user named the wrong file
 
 
 def _prepared(

@@ -8,7 +8,7 @@ from pathlib import Path
 from rich.console import Console
 from rich.text import Text
 
-from executive.core.errors import InputError, RecordingError
+from executive.core.errors import recording_named_by_the_user
 
 
 def serve_page(
@@ -32,10 +32,8 @@ def serve_page(
     from executive.inspector.web.server import PageServer, application
     from executive.inspector.web.session import Session
 
-    try:
+    with recording_named_by_the_user():
         session = Session(recording)
-    except RecordingError as error:
-        raise InputError(str(error)) from error  # the user named the wrong file
     token = None if is_loopback(host) else secrets.token_urlsafe(16)
     server = PageServer(application(session, token=token, write_scene=write_html), host, port)
     shown = f"[{host}]" if ":" in host else host

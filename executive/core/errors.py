@@ -12,7 +12,8 @@ An exception says that something is wired or written wrongly:
     └── RecordingError    a recording cannot be written or read    exit code 3
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 
 
@@ -85,3 +86,12 @@ class DeviceError(CellwrightError):
 
 class RecordingError(CellwrightError):
     """A recording cannot be written or read."""
+
+
+@contextmanager
+def recording_named_by_the_user() -> Iterator[None]:
+    """Turn a `RecordingError` into an `InputError`: the file is not what the user took it for."""
+    try:
+        yield
+    except RecordingError as error:
+        raise InputError(str(error)) from error

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
-from executive.core.errors import InputError, RecordingError
+from executive.core.errors import InputError, recording_named_by_the_user
 from executive.engine.language.expression import Expression, parse_expression
 from executive.engine.recording.reader import Recording
 from executive.inspector.brief import brief
@@ -13,6 +13,19 @@ from executive.inspector.index import RunIndex, WritePlace
 from executive.inspector.moments import PastBlackboard
 from executive.inspector.names import Names
 from executive.inspector.rebuilt import Rebuilt, WrittenNode
+
+
+def open_with_ticks(path: Path) -> Recording:
+    """Open a recording of a run that began.
+
+    Raises:
+        InputError: There is none at the path, or it holds no tick.
+    """
+    with recording_named_by_the_user():
+        recording = Recording.open(path)
+    if len(recording) == 0:
+        raise InputError(f"{path}: holds no tick; the run was killed before the first one")
+    return recording
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,13 +71,7 @@ class PastRun:
         Raises:
             InputError: There is none at the path, or it holds no tick.
         """
-        try:
-            recording = Recording.open(path)
-        except RecordingError as error:
-            raise InputError(str(error)) from error  # the user named the wrong file
-        if len(recording) == 0:
-            raise InputError(f"{path}: holds no tick; the run was killed before the first one")
-        return cls(recording)
+        return cls(open_with_ticks(path))
 
     @cached_property
     def reads(self) -> dict[int, frozenset[str]]:

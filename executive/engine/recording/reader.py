@@ -242,8 +242,15 @@ class Recording:
         Raises:
             RecordingError: There is no such image.
         """
-        data = self._large(IMAGES_TOPIC, number)
-        return image_of(base64.b64decode(json.loads(data)["data"]))
+        return image_of(self.png(number))
+
+    def png(self, number: int) -> bytes:
+        """Return one image as a PNG file.
+
+        Raises:
+            RecordingError: There is no such image.
+        """
+        return base64.b64decode(json.loads(self._large(IMAGES_TOPIC, number))["data"])
 
     def array(self, number: int) -> NDArray[np.generic]:
         """Return one large array.

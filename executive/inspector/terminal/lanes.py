@@ -14,7 +14,7 @@ from textual.message import Message
 from textual.strip import Strip
 from textual.widget import Widget
 
-from executive.inspector.web.activity import Activity, Code, Codes
+from executive.inspector.activity import Activity, Code, Codes
 
 MARKS: Final = {
     Code.NOTHING: (" ", "muted"),

@@ -9,11 +9,11 @@ from textual.timer import Timer
 from textual.worker import get_current_worker
 
 from executive.core.errors import InputError
+from executive.inspector.finding import Wish, found
 from executive.inspector.search import search
 from executive.inspector.terminal.lanes import Lanes
 from executive.inspector.terminal.opened import OpenedRun
 from executive.inspector.terminal.view import RunView, Start
-from executive.inspector.web.finding import Wish, found
 
 SPEEDS: Final = (0.25, 0.5, 1.0, 2.0, 4.0, 16.0, 64.0)
 _FRAME_S = 0.05

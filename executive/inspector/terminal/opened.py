@@ -4,11 +4,11 @@ import threading
 from collections.abc import Callable
 from pathlib import Path
 
-from executive.core.errors import InputError, RecordingError
+from executive.core.errors import recording_named_by_the_user
 from executive.engine.recording.growing import GrowingRecording
 from executive.engine.recording.reader import Recording
+from executive.inspector.activity import Activity
 from executive.inspector.past import PastRun
-from executive.inspector.web.activity import Activity
 
 _PIECE = 2000
 """Ticks that are read between two words about how far reading is."""
@@ -91,7 +91,5 @@ class OpenedRun:
 
     @staticmethod
     def _opened(path: Path) -> GrowingRecording:
-        try:
+        with recording_named_by_the_user():
             return GrowingRecording(path)
-        except RecordingError as error:
-            raise InputError(str(error)) from error  # the user named the wrong file

@@ -4,10 +4,10 @@ from textual import on, work
 from textual.widgets import Input
 
 from executive.core.errors import InputError
+from executive.inspector.finding import Wish
 from executive.inspector.terminal.commanding import Commanding
 from executive.inspector.terminal.opened import OpenedRun
 from executive.inspector.terminal.prompt import Typed
-from executive.inspector.web.finding import Wish
 
 
 class Typing(Commanding):

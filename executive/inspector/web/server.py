@@ -20,8 +20,8 @@ from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from executive.core.errors import CellwrightError, InputError
 from executive.engine.running.remote import NotRunningError, send
+from executive.inspector.finding import Wish
 from executive.inspector.web.access import AccessControl
-from executive.inspector.web.finding import Wish
 from executive.inspector.web.session import Session
 
 PAGE = Path(__file__).parent / "page"
@@ -179,7 +179,7 @@ class _Answers:
                 if progress != told:
                     told = progress
                     await socket.send_text(json.dumps(progress))
-                if progress["ended"] and progress["in_lanes"] == progress["ticks"]:
+                if progress["complete"]:
                     break
                 await asyncio.wait([gone], timeout=POLL_S)
             if not gone.done():

@@ -1,7 +1,6 @@
 """What the page may ask of one recording, whether its run has ended or still goes on."""
 
 import threading
-from collections.abc import Mapping
 from dataclasses import asdict
 from functools import lru_cache
 from pathlib import Path
@@ -9,20 +8,20 @@ from typing import Any
 
 from markdown_it import MarkdownIt
 
-from executive.core.errors import InputError
+from executive.core.errors import InputError, recording_named_by_the_user
 from executive.core.registry import closest
 from executive.engine.recording.growing import GrowingRecording
 from executive.engine.recording.reader import KeyState, Recording
 from executive.engine.ticks import NodeStatus
+from executive.inspector.activity import Activity, Codes
 from executive.inspector.answer_view import answer_document, written_document
 from executive.inspector.brief import brief
+from executive.inspector.finding import Wish, found
 from executive.inspector.overlays import picture_of
 from executive.inspector.past import PastRun
 from executive.inspector.provenance import who_wrote
 from executive.inspector.report import mission_report
 from executive.inspector.report_text import report_markdown
-from executive.inspector.web.activity import Activity, Codes
-from executive.inspector.web.finding import Wish, found
 from executive.inspector.why import why, why_ended
 from executive.inspector.why_not import why_halted, why_not
 
@@ -90,6 +89,7 @@ class Session:
         return {
             "ticks": count,
             "in_lanes": len(self._activity),
+            "complete": self.complete,
             "time_s": self.recording.tick(count - 1).time_s if count else 0.0,
             "ended": self.ended,
             "report": None if result is None else result.report.model_dump(mode="json"),
@@ -228,14 +228,8 @@ class Session:
         Raises:
             InputError: There is no such image.
         """
-        image = self._images().get(number)
-        if image is None:
-            raise InputError(f"no image {number} in {self.path}")
-        return image
-
-    def _images(self) -> Mapping[int, bytes]:
-        with self._lock:
-            return {image.number: image.png for image in self.recording.images()}
+        with self._lock, recording_named_by_the_user():
+            return self.recording.png(number)
 
 
 def _row(key: str, state: KeyState, number: int) -> dict[str, object]:

@@ -13,7 +13,7 @@ from toy_runs import FAILURE, RUNNING, SUCCESS, Leaf, busy_tree, record
 from executive.engine.blackboard import Blackboard
 from executive.engine.running.remote import CommandServer
 from executive.engine.ticks import NodeStatus
-from executive.inspector.web.activity import Activity, Code
+from executive.inspector.activity import Activity, Code
 from executive.inspector.web.server import application
 from executive.inspector.web.session import Session
 
@@ -135,7 +135,7 @@ def test_the_report_is_a_page_without_foreign_markup(client):
         ("/api/find?kind=where&from=0&where=1+%2B", "not an expression"),
         ("/api/ask?node=mision&tick=1", "did you mean 'mission'"),
         ("/api/who?key=cout&tick=1", "did you mean"),
-        ("/api/image/7.png", "no image 7"),
+        ("/api/image/7.png", "has no message 7"),
     ],
 )
 def test_bad_questions_are_answered(client, address, message):
@@ -179,7 +179,7 @@ def test_the_page_hears_of_a_run_that_grows(path, tmp_path):
         with growing.open("ab") as file:
             file.write(whole[len(whole) // 2 :])
         last = first
-        while not (last["ended"] and last["in_lanes"] == last["ticks"]):
+        while not last["complete"]:
             last = json.loads(live.receive_text())
     assert last["ticks"] > before
     assert len(client.get("/api/lanes?from=0&to=9999&columns=4000").content) == (

@@ -73,8 +73,7 @@ function onProgress(progress) {
   if (wasLast && last > store.to) Object.assign(values, { to: last });
   if (store.following) values.tick = last;
   const now = performance.now();
-  const caughtUp = progress.in_lanes === progress.ticks;
-  if (now - lastLanes > 250 || (progress.ended && caughtUp)) {
+  if (now - lastLanes > 250 || progress.complete) {
     lastLanes = now;
     change(values);
     if (!("to" in values)) refreshLanes();
