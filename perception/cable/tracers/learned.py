@@ -6,46 +6,19 @@ distinct mode starts a path of its own, and the likeliest paths go on side by si
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
 from pathlib import Path as FilePath
 
 import numpy as np
 
 from perception.cable.polyline import arc_lengths, point_at
-from perception.cable.tracers.modes import find_modes
-from perception.cable.tracers.paths import Ends, Path, checked
-from perception.cable.tracers.rivals import RivalConfig, reduced
+from perception.cable.tracers.paths import Ends, Path
+from perception.cable.tracers.search import Search, SearchConfig, run_searches
 from perception.cable.tracers.steps import StepModel
 from perception.cable.types import Endpoint, Points, Trace, TraceEnd
 from perception.cable.width import cable_width
 from perception.camera import GreyImage
 from perception.models.frames import ScaledImage, scale_image
 from perception.models.tracer_crop import STEP, WIDTH
-
-
-@dataclass(frozen=True, slots=True)
-class LearnedTracerConfig:
-    """Settings of the search.
-
-    Attributes:
-        beam: How many paths go on side by side.
-        modes: How many ways a path may go on in one step.
-        least: Ways less likely than this are not followed.
-        lost: Without any way or end more likely than this, a path is lost.
-        end_odds: How often a step meets an end of the cable, over how often it did in training.
-        window: Paths less likely than the best by this factor are dropped [nats].
-        most_steps: Longest trace.
-        rivals: How paths that meet again are compared.
-    """
-
-    beam: int = 6
-    modes: int = 3
-    least: float = 0.05
-    lost: float = 0.08
-    end_odds: float = 0.15
-    window: float = 4.5
-    most_steps: int = 600
-    rivals: RivalConfig = field(default_factory=RivalConfig)
 
 
 class LearnedTracer:
@@ -56,9 +29,9 @@ class LearnedTracer:
         config: Settings of the search.
     """
 
-    def __init__(self, folder: FilePath, config: LearnedTracerConfig | None = None) -> None:
+    def __init__(self, folder: FilePath, config: SearchConfig | None = None) -> None:
         self._model = StepModel(folder)
-        self._config = config or LearnedTracerConfig()
+        self._config = config or SearchConfig()
 
     def trace(
         self, image: GreyImage, start_px: Points, endpoints: Sequence[Endpoint]
@@ -85,7 +58,9 @@ class LearnedTracer:
             np.array([end.direction for end in far]).reshape(-1, 2),
         )
         starts = self._starts(scaled.into(start_px), endpoints, scaled)
-        found = self._search(scaled, starts, ends)
+        search = Search(starts, ends, self._config)
+        run_searches(self._model, scaled, [search], self._config.most_looks)
+        found = search.found()
         # Ways that met more than once are counted more than once.
         beliefs = np.exp(np.minimum([path.log_probability for path in found], 0.0))
         beliefs /= max(float(beliefs.sum()), 1.0)
@@ -112,41 +87,6 @@ class LearnedTracer:
         turns = np.linspace(0.0, 2.0 * np.pi, 16, endpoint=False)
         ways = known[:1] or list(np.column_stack([np.cos(turns), np.sin(turns)]))
         return [_fresh(np.vstack([points[0] - STEP * way, points[0]])) for way in ways]
-
-    def _search(self, image: ScaledImage, starts: list[Path], ends: Ends) -> list[Path]:
-        """Return ended paths, likeliest first."""
-        alive, done = starts, list[Path]()
-        for _ in range(self._config.most_steps):
-            if not alive:
-                break
-            ahead = [checked(path, image, ends) for path in self._expand(image, alive)]
-            rivals = reduced(done + ahead, self._config.rivals)
-            floor = rivals[0].log_probability - self._config.window
-            rivals = [path for path in rivals if path.log_probability > floor]
-            done = [path for path in rivals if path.end is not None]
-            alive = [path for path in rivals if path.end is None][: self._config.beam]
-        done += [path.ended(TraceEnd.LOST) for path in alive]
-        return sorted(done, key=lambda path: -path.log_probability)
-
-    def _expand(self, image: ScaledImage, paths: list[Path]) -> list[Path]:
-        """Return every way in which paths may go on or end."""
-        config = self._config
-        ahead = []
-        for path, outlook in zip(paths, self._model.outlooks(image, paths), strict=True):
-            modes = find_modes(outlook.cells, config.least, config.modes)
-            end = config.end_odds * outlook.end
-            believed = [end, *(mode.probability for mode in modes)]
-            # What lies beside the modes is the blur of the map, unless that is most of it.
-            total = max(sum(believed), 0.5)
-            ahead += [
-                path.extended(outlook.frame.back(mode.point_crop), mode.probability / total)
-                for mode in modes
-            ]
-            if end > config.least:
-                ahead.append(path.ended(TraceEnd.ENDPOINT, end / total))
-            if max(believed) < config.lost:
-                ahead.append(path.ended(TraceEnd.LOST, config.lost))
-        return ahead
 
 
 def _fresh(points: Points) -> Path:

@@ -24,6 +24,27 @@ EDGE_MARGIN = 0.5 * WIDTH
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class Detour:
+    """Another way between two points of a path, which met it again and was less likely.
+
+    Attributes:
+        first: The path's point after which they part.
+        last: The path's point at which they are together again.
+        points: The other way in between, shape (K, 2).
+        loss: How much less likely it is [nats].
+    """
+
+    first: int
+    last: int
+    points: Floats
+    loss: float
+
+    def moved(self, by: int) -> "Detour":
+        """Return the same of a path with so many more points before it."""
+        return replace(self, first=self.first + by, last=self.last + by)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class Path:
     """A partial trace in the scaled image.
 
@@ -31,11 +52,13 @@ class Path:
         points: About one step apart, shape (N, 2), N >= 2.
         logs: Logarithm of the probability of all choices up to each point, shape (N,).
         end: Why it has ended, None while it goes on.
+        detours: Other ways that were found between two of its points.
     """
 
     points: Floats
     logs: Floats
     end: TraceEnd | None = None
+    detours: tuple[Detour, ...] = ()
 
     @property
     def heading(self) -> Floats:
@@ -52,7 +75,7 @@ class Path:
     def extended(self, point: Floats, probability: float) -> "Path":
         """Return the path with one more point."""
         logs = np.append(self.logs, self.logs[-1] + np.log(probability))
-        return Path(np.vstack([self.points, point]), logs)
+        return replace(self, points=np.vstack([self.points, point]), logs=logs)
 
     def ended(self, end: TraceEnd, probability: float = 1.0) -> "Path":
         """Return the path as one that has ended."""
@@ -62,7 +85,9 @@ class Path:
 
     def shortened(self, points: int) -> "Path":
         """Return the path without its last points."""
-        return replace(self, points=self.points[:-points], logs=self.logs[:-points])
+        left = len(self.points) - points
+        kept = tuple(detour for detour in self.detours if detour.last < left)
+        return replace(self, points=self.points[:left], logs=self.logs[:left], detours=kept)
 
     def lifted(self, first: int, by: float) -> "Path":
         """Return the path with other logarithms from a point on."""
@@ -73,11 +98,26 @@ class Path:
     def joined(self, other: "Path", place: int) -> "Path":
         """Return this path continued by what comes after point `place` of another one."""
         ahead = other.logs[place + 1 :] - other.logs[place]
+        more = len(self.points) - 1 - place
+        later = tuple(d.moved(more) for d in other.detours if d.first >= place)
         return Path(
             np.vstack([self.points, other.points[place + 1 :]]),
             np.concatenate([self.logs, self.logs[-1] + ahead]),
             other.end,
+            self.detours + later,
         )
+
+    def passed_by(self, detour: Detour) -> "Path":
+        """Return the path with another way that it might have gone."""
+        return replace(self, detours=(*self.detours, detour))
+
+    def along(self, detour: Detour) -> "Path":
+        """Return the path that goes one of its other ways."""
+        points = np.vstack(
+            [self.points[: detour.first + 1], detour.points, self.points[detour.last :]]
+        )
+        logs = np.full(len(points), self.logs[-1] - detour.loss)
+        return Path(points, logs, self.end)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from perception.cable.tracers.paths import Path, distances
+from perception.cable.tracers.paths import Detour, Path, distances
 from perception.models.tracer_crop import STEP, WIDTH
 
 Floats = NDArray[np.float64]
@@ -58,10 +58,12 @@ def _one_of(path: Path, other: Path, config: RivalConfig) -> Path | None:
     # Both ways together are as likely as before; the advantage says how they share that.
     both = float(np.logaddexp(path.logs[-1], other.logs[place]))
     share = both - float(np.log1p(np.exp(-abs(advantage))))
+    apart, last = parting(path, other), len(path.points) - 1
     if advantage > 0.0:
-        last = len(path.points) - 1
-        return path.joined(other, place).lifted(last, share - float(path.logs[-1]))
-    return other.lifted(place, share - float(other.logs[place]))
+        kept = path.joined(other, place).lifted(last, share - float(path.logs[-1]))
+        return kept.passed_by(Detour(apart - 1, last, other.points[apart:place], advantage))
+    kept = other.lifted(place, share - float(other.logs[place]))
+    return kept.passed_by(Detour(apart - 1, place, path.points[apart:last], -advantage))
 
 
 def meeting(path: Path, other: Path) -> int | None:

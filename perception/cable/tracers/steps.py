@@ -25,13 +25,19 @@ class Outlook:
 
     Attributes:
         frame: Where its crop lies.
+        crop: What the network saw, shape (3, P, P).
         cells: Probability of each cell of the crop, shape (G, G).
         end: Probability that the cable ends before.
+        later: The same for two, three, ... steps ahead if it does not end, shape (K, G, G).
+        clear: Whether the first step is beyond doubt.
     """
 
     frame: CropFrame
+    crop: Crop
     cells: Floats
     end: float
+    later: Floats
+    clear: bool
 
 
 class StepModel:
@@ -39,6 +45,7 @@ class StepModel:
 
     Attributes:
         zoom: Pixels a unit of the images that it needs.
+        looks: How many crops it has looked at so far.
 
     Args:
         folder: A trained version, see `perception.models.store`.
@@ -48,6 +55,7 @@ class StepModel:
         self._network = load_network(folder)
         config = read_config(folder)
         self._temperature, self.zoom = config.temperature, config.zoom
+        self.looks = 0
 
     def outlooks(self, image: ScaledImage, paths: Sequence[Path]) -> list[Outlook]:
         """Return where each path may go on; where that is not clear, a mirror is asked as well."""
@@ -56,20 +64,24 @@ class StepModel:
             [make_crop(image, p.points, f) for p, f in zip(paths, frames, strict=True)]
         )
         cells, ends = self._beliefs(crops)
-        unclear = np.flatnonzero(cells.max(axis=(1, 2)) < CLEAR * PEAK / self._temperature)
+        clear = cells[:, 0].max(axis=(1, 2)) >= CLEAR * PEAK / self._temperature
+        unclear = np.flatnonzero(~clear)
         if len(unclear):
             mirrored, mirrored_ends = self._beliefs(np.ascontiguousarray(crops[unclear, :, ::-1]))
-            cells[unclear] = 0.5 * (cells[unclear] + mirrored[:, ::-1])
+            cells[unclear] = 0.5 * (cells[unclear] + mirrored[:, :, ::-1])
             ends[unclear] = 0.5 * (ends[unclear] + mirrored_ends)
         return [
-            Outlook(frame, own, float(end))
-            for frame, own, end in zip(frames, cells, ends, strict=True)
+            Outlook(frames[k], crops[k], cells[k, 0], float(ends[k]), cells[k, 1:], bool(clear[k]))
+            for k in range(len(paths))
         ]
 
     @torch.inference_mode()
     def _beliefs(self, crops: Crop) -> tuple[Floats, Floats]:
-        """Return the probability of each cell, shape (N, G, G), and of the end, shape (N,)."""
+        """Return the probability of each cell, shape (N, K, G, G), and of the end, shape (N,)."""
+        self.looks += len(crops)
         heat, stop = self._network(torch.from_numpy(crops))
-        beliefs = torch.softmax(step_logits(heat, stop) / self._temperature, 1).double().numpy()
+        first = torch.softmax(step_logits(heat, stop) / self._temperature, 1)
+        later = torch.softmax(heat[:, 1:].flatten(2) / self._temperature, 2)
         grid = SIZE // CELL
-        return beliefs[:, :-1].reshape(-1, grid, grid).copy(), beliefs[:, -1].copy()
+        cells = torch.cat([first[:, None, :-1], later], 1).double().numpy()
+        return cells.reshape(len(crops), -1, grid, grid), first[:, -1].double().numpy().copy()
