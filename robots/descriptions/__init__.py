@@ -3,10 +3,15 @@
 from collections.abc import Callable
 from pathlib import Path
 
+from robots.descriptions.kinova import kinova_j2s6s200, kinova_j2s7s300
 from robots.descriptions.model import RobotDescription
 from robots.descriptions.yumi import yumi
 
-DESCRIPTIONS: dict[str, Callable[[], RobotDescription]] = {"yumi": yumi}
+DESCRIPTIONS: dict[str, Callable[[], RobotDescription]] = {
+    "kinova_j2s6s200": kinova_j2s6s200,
+    "kinova_j2s7s300": kinova_j2s7s300,
+    "yumi": yumi,
+}
 
 
 def urdf_path(name: str) -> Path:

@@ -4,9 +4,9 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
-from robots.descriptions import DESCRIPTIONS, urdf_path
+from robots.descriptions import DESCRIPTIONS, kinova, urdf_path
 from robots.descriptions.urdf import to_urdf
-from robots.descriptions.yumi import arm_joint_names, finger_joint_names, yumi
+from robots.descriptions.yumi import arm_joint_names, finger_joint_names
 from robots.interfaces import ARMS
 
 
@@ -75,22 +75,27 @@ def test_fingers_part_along_the_tool_x_axis_and_shut_at_zero(model):
             assert tcp.rotation.T @ moved == pytest.approx([sign * 0.02, 0, 0], abs=1e-9)
 
 
-def test_every_shape_and_limit_reaches_pinocchio(model):
-    geometry = pin.buildGeomFromUrdf(model, str(urdf_path("yumi")), pin.GeometryType.COLLISION)
-    assert geometry.ngeoms == sum(len(link.shapes) for link in yumi().links)
-    for joint in yumi().joints:
-        if joint.limits is not None:
-            index = model.joints[model.getJointId(joint.name)].idx_q
-            assert model.lowerPositionLimit[index] == pytest.approx(joint.limits.lower, rel=1e-8)
-            assert model.upperPositionLimit[index] == pytest.approx(joint.limits.upper, rel=1e-8)
-            assert model.velocityLimit[index] == pytest.approx(joint.limits.velocity, rel=1e-8)
+@pytest.mark.parametrize("name", sorted(DESCRIPTIONS))
+def test_every_shape_and_limit_reaches_pinocchio(name):
+    model, robot = pin.buildModelFromUrdf(str(urdf_path(name))), DESCRIPTIONS[name]()
+    geometry = pin.buildGeomFromUrdf(model, str(urdf_path(name)), pin.GeometryType.COLLISION)
+    assert geometry.ngeoms == sum(len(link.shapes) for link in robot.links)
+    moving = [joint for joint in robot.joints if joint.limits is not None]
+    assert model.nq == model.nv == len(moving)
+    for joint in moving:
+        index = model.joints[model.getJointId(joint.name)].idx_q
+        assert model.lowerPositionLimit[index] == pytest.approx(joint.limits.lower, rel=1e-8)
+        assert model.upperPositionLimit[index] == pytest.approx(joint.limits.upper, rel=1e-8)
+        assert model.velocityLimit[index] == pytest.approx(joint.limits.velocity, rel=1e-8)
 
 
-def test_pybullet_sees_the_same_kinematics(model):
+@pytest.mark.parametrize("name", sorted(DESCRIPTIONS))
+def test_pybullet_sees_the_same_kinematics(name):
     pybullet = pytest.importorskip("pybullet")
+    model = pin.buildModelFromUrdf(str(urdf_path(name)))
     client = pybullet.connect(pybullet.DIRECT)
     try:
-        body = pybullet.loadURDF(str(urdf_path("yumi")), useFixedBase=True, physicsClientId=client)
+        body = pybullet.loadURDF(str(urdf_path(name)), useFixedBase=True, physicsClientId=client)
         rng = np.random.default_rng(0)
         q = rng.uniform(model.lowerPositionLimit, model.upperPositionLimit)
         expected = poses(model, q)
@@ -108,3 +113,23 @@ def test_pybullet_sees_the_same_kinematics(model):
             assert state[4] == pytest.approx(pose.translation, abs=1e-5)
     finally:
         pybullet.disconnect(client)
+
+
+@pytest.mark.parametrize("name", ["kinova_j2s6s200", "kinova_j2s7s300"])
+def test_kinova_reaches_as_far_as_is_published(name):
+    model = pin.buildModelFromUrdf(str(urdf_path(name)))
+    rng, farthest = np.random.default_rng(1), 0.0
+    for _ in range(1500):
+        at = poses(model, rng.uniform(model.lowerPositionLimit, model.upperPositionLimit))
+        arm = at["end_effector"].translation - at["link_2"].translation
+        farthest = max(farthest, float(np.linalg.norm(arm)))
+    assert 0.95 < farthest <= kinova.REACH_M
+
+
+def test_the_tool_looks_and_sucks_along_the_blade():
+    model = pin.buildModelFromUrdf(str(urdf_path("kinova_j2s7s300")))
+    at = poses(model, pin.neutral(model))
+    ahead = at[kinova.BLADE_FRAME].rotation[:, 2]
+    cup = at[kinova.SUCTION_FRAME].translation - at[kinova.BLADE_FRAME].translation
+    assert cup == pytest.approx(kinova.CUP_AHEAD_M * ahead)
+    assert at[kinova.CAMERA_FRAME].rotation[:, 2] == pytest.approx(ahead)
