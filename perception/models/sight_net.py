@@ -7,15 +7,14 @@ from torch import Tensor, nn
 from perception.models.blocks import Down, Up, conv
 from perception.models.sight_input import CHANNELS, STRIDE
 
-# Maps at full resolution: cable, connector.
-MASKS = 2
 # Maps on the grid, in order. Heats are logits of a middle of something in a cell.
 HEATS = ("end", "crossing", "tangle")
 END, CROSSING, TANGLE = range(3)
-# From the middle of the cell [cells]; unit vector into the cable; logit; log of pixels.
+# From the middle of the cell [cells]; unit vector into the cable; logit of an end that carries
+# a connector; logs of pixels; logit of a cell that shows a connector.
 OFFSET, DIRECTION = slice(3, 5), slice(5, 7)
-CONNECTOR, LOG_WIDTH, LOG_RADIUS = 7, 8, 9
-GRID_MAPS = 10
+PLUGGED, LOG_WIDTH, LOG_RADIUS, CONNECTOR = 7, 8, 9, 10
+GRID_MAPS = 11
 
 
 class SightNet(nn.Module):
@@ -40,13 +39,13 @@ class SightNet(nn.Module):
         )
         self.around = conv(last, last)
         self.up3, self.up2, self.up1 = Up(last, third), Up(third, second), Up(second, first)
-        self.mask = nn.Conv2d(first, MASKS * STRIDE * STRIDE, 1)
+        self.mask = nn.Conv2d(first, STRIDE * STRIDE, 1)
         self.shuffle = nn.PixelShuffle(STRIDE)
         self.look = conv(first, first)
         self.grid = nn.Conv2d(first, GRID_MAPS, 1)
 
     def forward(self, inputs: Tensor) -> tuple[Tensor, Tensor]:
-        """Return logits of masks, shape (N, MASKS, H, W), and maps, (N, GRID_MAPS, H/4, W/4).
+        """Return logits of cable, shape (N, 1, H, W), and maps, (N, GRID_MAPS, H / 4, W / 4).
 
         Args:
             inputs: From `sight_input.prepare`, shape (N, CHANNELS, H, W), both sides multiples

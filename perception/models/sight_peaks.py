@@ -36,4 +36,5 @@ def apart(places_px: Floats, least_px: float) -> list[int]:
 
 def cell_middle(columns: NDArray[np.int64], rows: NDArray[np.int64]) -> Floats:
     """Return the middles of cells [px], shape (N, 2)."""
-    return (np.column_stack([columns, rows]) + 0.5) * STRIDE - 0.5
+    middles = (np.column_stack([columns, rows]).astype(float) + 0.5) * STRIDE - 0.5
+    return np.asarray(middles, dtype=float)

@@ -17,12 +17,12 @@ from perception.training.command import main
 from perception.training.loop import Batch
 from perception.training.sight_scenes import SightTruth, draw_truth, relit, turned
 
-SIDE_PX = 416
+SIDE_PX = 384
 # Scenes that are kept, and seen from other sides, while new ones come.
 POOL = 48
 FRESH = 3
 # Shares of the loss.
-MASK, HEATS, END, WIDTH, RADIUS = 2.0, (1.0, 0.4, 0.3), 0.5, 0.5, 0.2
+MASK, HEATS, END, WIDTH, RADIUS, CONNECTOR = 4.0, (1.0, 0.4, 0.3), 0.5, 0.5, 0.2, 1.0
 # For the figures only: how sure, and how many cells off, counts as found.
 LIKELY, NEAR_CELLS = 0.3, 2.5
 
@@ -62,8 +62,11 @@ class SightTask:
         """Return the weighted sum of all losses."""
         inputs, masks, targets = batch
         shown, grid = network(inputs.contiguous(memory_format=torch.channels_last))
-        shown, grid = shown.float(), grid.float()
-        total = MASK * mask_loss(shown, masks.float())
+        shown, grid = shown[:, 0].float(), grid.float().contiguous()
+        total = MASK * binary_cross_entropy_with_logits(shown, masks)
+        total = total + CONNECTOR * binary_cross_entropy_with_logits(
+            grid[:, sight_net.CONNECTOR], targets[:, wanted.CONNECTOR]
+        )
         for k, share in enumerate(HEATS):
             weight = targets[:, wanted.WEIGHTS.start + k]
             total = total + share * heat_loss(grid[:, k], targets[:, k], weight)
@@ -83,7 +86,7 @@ class SightTask:
             losses.append(float(self.loss(network, batch)))
             inputs, masks, targets = batch
             shown, grid = network(inputs)
-            cable, truth = shown[:, 0] > 0.0, masks[:, 0] > 0
+            cable, truth = shown[:, 0] > 0.0, masks > 0.0
             both, either = both + int((cable & truth).sum()), either + int((cable | truth).sum())
             at_cable = targets[:, wanted.AT_CABLE] > 0.0
             errors = (grid[:, sight_net.LOG_WIDTH] - targets[:, wanted.LOG_WIDTH]).abs()
@@ -109,18 +112,9 @@ def collate(truths: list[SightTruth]) -> Batch:
     """Return inputs, masks and targets of images of one size."""
     return (
         torch.from_numpy(np.stack([prepare(truth.image) for truth in truths])),
-        torch.from_numpy(np.stack([wanted.masks_of(truth) for truth in truths])),
+        torch.from_numpy(np.stack([truth.cable for truth in truths]).astype(np.float32)),
         torch.from_numpy(np.stack([wanted.grid_of(truth) for truth in truths])),
     )
-
-
-def mask_loss(shown: Tensor, masks: Tensor) -> Tensor:
-    """Return cross-entropy, and what is missing from the overlap (Milletari et al. 2016)."""
-    entropy = binary_cross_entropy_with_logits(shown, masks)
-    believed = torch.sigmoid(shown)
-    shared, all_of = (believed * masks).sum((0, 2, 3)), (believed + masks).sum((0, 2, 3))
-    overlap: Tensor = (1.0 - (2.0 * shared + 1.0) / (all_of + 1.0)).mean()
-    return 2.0 * entropy + 0.5 * overlap
 
 
 def heat_loss(heat: Tensor, target: Tensor, weight: Tensor) -> Tensor:
@@ -140,7 +134,7 @@ def end_loss(grid: Tensor, targets: Tensor) -> Tensor:
         grid[:, sight_net.DIRECTION], targets[:, wanted.DIRECTION], reduction="none"
     ).sum(1)
     kind = binary_cross_entropy_with_logits(
-        grid[:, sight_net.CONNECTOR], targets[:, wanted.CONNECTOR], reduction="none"
+        grid[:, sight_net.PLUGGED], targets[:, wanted.PLUGGED], reduction="none"
     )
     return _mean(offset + ways + 0.5 * kind, at_end)
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import TypeVar
 
 import cv2
 import numpy as np
@@ -17,6 +18,7 @@ from perception.training.waypoints import resample
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
+Kind = TypeVar("Kind", bound=np.generic)
 
 NARROWEST_PX, WIDEST_PX = 3.5, 15.0
 # Share of scenes without any cable.
@@ -113,11 +115,13 @@ def truth_of(scene: Scene) -> SightTruth:
 
 def _masks(scene: Scene) -> tuple[Bools, Bools, NDArray[np.float32]]:
     """Return which pixels show cable and connector, and how high cable rises."""
-    size, radius = scene.image.shape, 0.5 * scene.width_px
+    size = scene.image.shape
     height, unused = np.zeros(size, np.float32), np.zeros((*size, 4), np.float32)
     for each in scene.cables:
         strand = np.column_stack([each.points_px, each.heights * scene.width_px])
-        rasterise.splat(resample(strand, scene.width_px / 4.0), radius, 0.0, height, unused)
+        rasterise.splat(
+            resample(strand, scene.width_px / 4.0), 0.5 * each.width_px, 0.0, height, unused
+        )
     above = _outlined(size, [each for each in scene.connectors if not each.covered])
     below = _outlined(size, [each for each in scene.connectors if each.covered])
     cable = (height > 0.0) & ~above
@@ -187,12 +191,12 @@ def turned(truth: SightTruth, mirrored: bool, quarters: int) -> SightTruth:
     def places(values: Floats) -> Floats:
         return vectors(values - middle) + middle
 
-    def pixels(values: NDArray[np.generic]) -> NDArray[np.generic]:
-        return np.rot90(values[:, ::-1] if mirrored else values, quarters)
+    def pixels(values: NDArray[Kind]) -> NDArray[Kind]:
+        return np.ascontiguousarray(np.rot90(values[:, ::-1] if mirrored else values, quarters))
 
     return replace(
         truth,
-        image=np.ascontiguousarray(pixels(truth.image)),
+        image=pixels(truth.image),
         cable=pixels(truth.cable),
         connector=pixels(truth.connector),
         ends=places(truth.ends),

@@ -12,18 +12,13 @@ Maps = NDArray[np.float32]
 
 # Maps of targets on the grid. Heats come first, as in `sight_net.HEATS`, then their weights.
 HEATS, WEIGHTS = slice(0, 3), slice(3, 6)
-AT_END, OFFSET, DIRECTION, CONNECTOR = 6, slice(7, 9), slice(9, 11), 11
-AT_TANGLE, LOG_RADIUS, AT_CABLE, LOG_WIDTH = 12, 13, 14, 15
-MAPS = 16
+AT_END, OFFSET, DIRECTION, PLUGGED = 6, slice(7, 9), slice(9, 11), 11
+AT_TANGLE, LOG_RADIUS, AT_CABLE, LOG_WIDTH, CONNECTOR = 12, 13, 14, 15, 16
+MAPS = 17
 # An end hidden or this near to the border [cable widths] is neither wanted nor unwanted.
 INSIDE, AROUND = 0.6, 2.0
 # Cells this near to an end answer for it.
 ANSWERS_CELLS = 1.5
-
-
-def masks_of(truth: SightTruth) -> NDArray[np.uint8]:
-    """Return which pixels show cable and connector, shape (2, H, W)."""
-    return np.stack([truth.cable, truth.connector]).astype(np.uint8)
 
 
 def grid_of(truth: SightTruth) -> Maps:
@@ -36,10 +31,9 @@ def grid_of(truth: SightTruth) -> Maps:
     for place in truth.crossings:
         _add_heat(grid[1], _cells(place), spread)
     _add_tangles(grid, truth)
-    share = cv2.resize(
-        truth.cable.astype(np.float32), (columns, rows), interpolation=cv2.INTER_AREA
-    )
-    grid[AT_CABLE] = share > 0.5
+    for place, mask in ((AT_CABLE, truth.cable), (CONNECTOR, truth.connector)):
+        share = cv2.resize(mask.astype(np.float32), (columns, rows), interpolation=cv2.INTER_AREA)
+        grid[place] = share > 0.5
     grid[LOG_WIDTH] = np.log(truth.width_px)
     return grid
 
@@ -84,7 +78,7 @@ def _add_ends(grid: Maps, truth: SightTruth, spread: float) -> None:
         grid[AT_END, rows, columns] = 1.0
         grid[OFFSET, rows, columns] = (at[:, None] - np.stack([columns, rows])).astype(np.float32)
         grid[DIRECTION, rows, columns] = truth.inwards[k][:, None]
-        grid[CONNECTOR, rows, columns] = truth.plugged[k]
+        grid[PLUGGED, rows, columns] = truth.plugged[k]
 
 
 def _add_tangles(grid: Maps, truth: SightTruth) -> None:

@@ -1,0 +1,1 @@
+"""One learned look at a whole image: cable, ends, connectors, crossings, tangles."""
