@@ -1,5 +1,6 @@
-"""Connectors at the ends of cables, and things on the table that only look like them."""
+"""What cables end in: plugs, USB plugs, jacks, adapters wider than a palm, or nothing."""
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import cv2
@@ -9,10 +10,9 @@ from numpy.typing import NDArray
 Floats = NDArray[np.float64]
 Picture = NDArray[np.float32]
 
-BARE = 0.15
-ADAPTER = 0.25
+BARE = 0.18
 # Whatever its cable, a connector may be black or white.
-OTHER_GREY = 0.35
+OTHER_GREY = 0.4
 # Fractions of a pixel that outlines are drawn to.
 SHIFT = 3
 
@@ -22,6 +22,7 @@ class Connector:
     """A plug or an adapter at one end of a cable.
 
     Attributes:
+        kind: `plug`, `usb`, `jack` or `adapter`.
         cable: Number of the cable.
         end: 0 where the cable's line begins, 1 where it ends.
         covered: Whether strands lie over it, not under it.
@@ -30,11 +31,38 @@ class Connector:
         greys: Grey value of each part.
     """
 
+    kind: str
     cable: int
     end: int
     covered: bool
     outlines_px: tuple[Floats, ...]
     greys: tuple[float, ...]
+
+    def hides(self, point_px: Floats) -> bool:
+        """Say whether nothing below it can be seen at a point."""
+        place = (float(point_px[0]), float(point_px[1]))
+        corners = (outline.astype(np.float32)[:, None] for outline in self.outlines_px)
+        return not self.covered and any(
+            cv2.pointPolygonTest(outline, place, False) >= 0.0 for outline in corners
+        )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Place:
+    tip_px: Floats
+    out: Floats
+    width_px: float
+
+    def quad(self, begin: float, end: float, near: float, far: float) -> Floats:
+        """Return corners; lengths in cable widths, `near` and `far` are widths there."""
+        side = 0.5 * self.width_px * np.array([-self.out[1], self.out[0]])
+        first, last = (self.tip_px + at * self.width_px * self.out for at in (begin, end))
+        return np.array(
+            [first - near * side, first + near * side, last + far * side, last - far * side]
+        )
+
+
+_Parts = list[tuple[Floats, float]]
 
 
 def draw_up_connectors(
@@ -47,7 +75,7 @@ def draw_up_connectors(
         cable: Number of the cable.
         line_px: Its centre line, half a cable width a node, shape (N, 2) or more columns.
         width_px: Its width.
-        brightness: Its grey value.
+        brightness: Its grey value; connectors often have one near it.
     """
     made = []
     for end, (tip, inner) in enumerate(((line_px[0], line_px[2]), (line_px[-1], line_px[-3]))):
@@ -55,86 +83,82 @@ def draw_up_connectors(
             continue
         out = tip[:2] - inner[:2]
         out /= max(float(np.linalg.norm(out)), 1e-9)
-        outlines = _outlines(rng, tip[:2], out, width_px)
-        greys = tuple(_grey(rng, brightness) for _ in outlines)
-        made.append(Connector(cable, end, bool(rng.random() < 0.5), outlines, greys))
+        kind = str(rng.choice(list(_KINDS), p=[0.46, 0.18, 0.12, 0.24]))
+        parts = _KINDS[kind](rng, _Place(tip[:2], out, width_px), _grey(rng, brightness))
+        outlines, greys = zip(*parts, strict=True)
+        made.append(Connector(kind, cable, end, bool(rng.random() < 0.5), outlines, greys))
     return made
 
 
-def _outlines(
-    rng: np.random.Generator, at: Floats, out: Floats, width_px: float
-) -> tuple[Floats, ...]:
-    side = np.array([-out[1], out[0]])
-    adapter = rng.random() < ADAPTER
-    outlines = []
-    for _ in range(int(rng.integers(1, 4))):
-        half = side * width_px * (rng.uniform(0.9, 2.4) if adapter else rng.uniform(0.5, 1.3))
-        length = out * width_px * rng.uniform(0.8, 2.5)
-        narrow = half * rng.uniform(0.6, 1.0)
-        outlines.append(
-            np.array([at - half, at + half, at + length + narrow, at + length - narrow])
-        )
-        at = at + length
-    return tuple(outlines)
+def draw_connectors(picture: Picture, connectors: Sequence[Connector], scale: float) -> None:
+    """Draw connectors into a picture that is `scale` times as fine, in place."""
+    for connector in connectors:
+        for outline, grey in zip(connector.outlines_px, connector.greys, strict=True):
+            places = np.round((outline * scale + 0.5 * (scale - 1.0)) * 2**SHIFT)
+            cv2.fillPoly(picture, [places.astype(np.int32)[:, None]], grey, cv2.LINE_8, SHIFT)
 
 
 def _grey(rng: np.random.Generator, brightness: float) -> float:
     if rng.random() < OTHER_GREY:
         return float(rng.uniform(5.0, 250.0))
-    return float(np.clip(brightness + rng.normal(0.0, 45.0), 0.0, 255.0))
+    return _near(rng, brightness, 45.0)
 
 
-def draw_connector(picture: Picture, connector: Connector, scale: float = 1.0) -> None:
-    """Draw a connector into a picture that is `scale` times as fine, in place."""
-    for outline, grey in zip(connector.outlines_px, connector.greys, strict=True):
-        _fill(picture, outline * scale + 0.5 * (scale - 1.0), grey)
+def _near(rng: np.random.Generator, grey: float, spread: float) -> float:
+    return float(np.clip(grey + rng.normal(0.0, spread), 0.0, 255.0))
 
 
-def draw_distractors(
-    rng: np.random.Generator, picture: Picture, width_px: float, brightness: float
-) -> None:
-    """Draw what is neither cable nor connector: rods, scissors, screws, paper, in place.
-
-    Rods are narrower or wider than cable, so that straight cable stays cable.
-    """
-    rows, columns = picture.shape
-    for _ in range(int(rng.integers(1, 5))):
-        at = rng.uniform(0.0, 1.0, 2) * (columns, rows)
-        grey = _grey(rng, brightness)
-        kind = rng.choice(["rod", "scissors", "disc", "ring", "sheet"])
-        if kind == "rod":
-            _draw_rod(rng, picture, at, width_px, grey)
-        elif kind == "scissors":
-            for _ in range(2):
-                _draw_rod(rng, picture, at, width_px, grey)
-        elif kind == "sheet":
-            corners = at + rng.uniform(-1.0, 1.0, (4, 2)) * rng.uniform(2.0, 8.0) * width_px
-            _fill(picture, corners, grey)
-        else:
-            thickness = -1 if kind == "disc" else max(int(rng.uniform(0.15, 0.5) * width_px), 1)
-            radius = max(int(rng.uniform(0.4, 2.2) * width_px), 1)
-            centre = (int(at[0]), int(at[1]))
-            cv2.circle(picture, centre, radius, grey, thickness, cv2.LINE_AA)
+def _plug(rng: np.random.Generator, place: _Place, grey: float) -> _Parts:
+    parts, at = [], 0.0
+    for _ in range(int(rng.integers(1, 4))):
+        wide, length = rng.uniform(1.0, 2.6), rng.uniform(0.8, 2.5)
+        quad = place.quad(at, at + length, wide, wide * rng.uniform(0.6, 1.0))
+        parts.append((quad, _near(rng, grey, 45.0)))
+        at += length
+    return parts
 
 
-def _draw_rod(
-    rng: np.random.Generator, picture: Picture, at: Floats, width_px: float, grey: float
-) -> None:
-    turn = rng.uniform(0.0, 2.0 * np.pi)
-    along = np.array([np.cos(turn), np.sin(turn)])
-    side = np.array([-along[1], along[0]])
-    thin = rng.random() < 0.5
-    half = side * 0.5 * width_px * (rng.uniform(0.15, 0.6) if thin else rng.uniform(1.7, 4.0))
-    tapered = half * rng.uniform(0.2, 1.0)
-    length = along * width_px * rng.uniform(3.0, 16.0)
-    _fill(
-        picture,
-        np.array([at - half, at + half, at + length + tapered, at + length - tapered]),
-        grey,
-    )
+def _usb(rng: np.random.Generator, place: _Place, grey: float) -> _Parts:
+    wide, long, shell = rng.uniform(1.6, 3.2), rng.uniform(2.0, 5.0), rng.uniform(1.2, 3.0)
+    metal, narrow = rng.uniform(120.0, 250.0), wide * rng.uniform(0.6, 0.9)
+    parts = [
+        (place.quad(0.0, 0.8, 1.2, 0.7 * wide), _near(rng, grey, 15.0)),
+        (place.quad(0.8, long, wide, wide), grey),
+        (place.quad(long, long + shell, narrow, narrow), metal),
+    ]
+    for side in (-0.22, 0.22):
+        hole = place.quad(long + 0.35 * shell, long + 0.65 * shell, 0.18 * narrow, 0.18 * narrow)
+        shift = side * narrow * place.width_px * np.array([-place.out[1], place.out[0]])
+        parts.append((hole + shift, 0.35 * metal))
+    return parts
 
 
-def _fill(picture: Picture, corners: Floats, grey: float) -> None:
-    """Fill a polygon; corners in pixels of the picture."""
-    places = np.round(corners * 2**SHIFT).astype(np.int32)
-    cv2.fillPoly(picture, [places[:, None]], grey, cv2.LINE_AA, SHIFT)
+def _jack(rng: np.random.Generator, place: _Place, grey: float) -> _Parts:
+    wide, long, pin = rng.uniform(1.3, 2.2), rng.uniform(1.5, 4.0), rng.uniform(1.0, 2.5)
+    thin = rng.uniform(0.35, 0.7)
+    return [
+        (place.quad(0.0, long, wide, wide * rng.uniform(0.7, 1.0)), grey),
+        (place.quad(long, long + pin, thin, 0.8 * thin), rng.uniform(90.0, 250.0)),
+    ]
+
+
+def _adapter(rng: np.random.Generator, place: _Place, grey: float) -> _Parts:
+    wide, long = rng.uniform(1.8, 6.0), rng.uniform(2.0, 7.5)
+    rim, label = rng.uniform(0.05, 0.25) * wide, rng.uniform(0.2, 0.6) * wide
+    parts = [
+        (place.quad(0.0, long, wide, wide * rng.uniform(0.7, 1.0)), _near(rng, grey, 25.0)),
+        (place.quad(0.5 * rim, long - 0.5 * rim, 0.7 * wide - rim, 0.7 * wide - rim), grey),
+    ]
+    if rng.random() < 0.4:
+        middle = rng.uniform(0.35, 0.65) * long
+        quad = place.quad(middle - 0.2 * long, middle + 0.2 * long, label, label)
+        parts.append((quad, _near(rng, grey, 60.0)))
+    return parts
+
+
+_KINDS: dict[str, Callable[[np.random.Generator, _Place, float], _Parts]] = {
+    "plug": _plug,
+    "usb": _usb,
+    "jack": _jack,
+    "adapter": _adapter,
+}

@@ -62,8 +62,16 @@ def near_pairs(xy: Floats, cable: Ints) -> Ints:
 
 
 @numba.njit(cache=True)
-def settle(nodes: Floats, cable: Ints, pairs: Ints, rounds: int) -> None:
-    """Push overlapping balls apart, in place, shape (N, 3); the table is at height 0."""
+def settle(nodes: Floats, cable: Ints, pairs: Ints, rounds: int, widths: Floats) -> None:
+    """Push overlapping balls apart, in place.
+
+    Args:
+        nodes: Balls (x, y, z), the table at height 0, shape (N, 3).
+        cable: Which cable each belongs to, shape (N,).
+        pairs: From `near_pairs`.
+        rounds: How often all pairs are pushed.
+        widths: Diameter of the balls of each cable.
+    """
     n = len(nodes)
     for _ in range(rounds):
         for k in range(len(pairs)):
@@ -71,8 +79,9 @@ def settle(nodes: Floats, cable: Ints, pairs: Ints, rounds: int) -> None:
             dx, dy = nodes[i, 0] - nodes[j, 0], nodes[i, 1] - nodes[j, 1]
             dz = nodes[i, 2] - nodes[j, 2]
             distance = np.sqrt(dx * dx + dy * dy + dz * dz)
-            if 1e-6 < distance < 1.0:
-                push = 0.4 * (1.0 - distance) / distance
+            least = 0.5 * (widths[cable[i]] + widths[cable[j]])
+            if 1e-6 < distance < least:
+                push = 0.4 * (least - distance) / distance
                 nodes[i, 0] += push * dx
                 nodes[i, 1] += push * dy
                 nodes[i, 2] += push * dz
@@ -84,4 +93,4 @@ def settle(nodes: Floats, cable: Ints, pairs: Ints, rounds: int) -> None:
                 for axis in range(3):
                     middle = 0.5 * (nodes[i - 1, axis] + nodes[i + 1, axis])
                     nodes[i, axis] += 0.3 * (middle - nodes[i, axis])
-            nodes[i, 2] = max(nodes[i, 2] - 0.01, 0.5)
+            nodes[i, 2] = max(nodes[i, 2] - 0.01, 0.5 * widths[cable[i]])

@@ -18,9 +18,10 @@ def splat(points: Floats, radius: float, label: float, height: Images, surface: 
         label: Number of the cable.
         height: Height of what is in front, shape (H, W).
         surface: What is in front: label, place across in [-1, 1], arc length [px], direction
-            of the strand [rad]; shape (H, W, 4).
+            of the strand [rad]; shape (H, W, 4), or empty where only heights are asked for.
     """
     rows, columns = height.shape
+    painted = surface.size > 0
     along = 0.0
     for k in range(len(points) - 1):
         ax, ay, az = points[k]
@@ -43,6 +44,8 @@ def splat(points: Floats, radius: float, label: float, height: Images, surface: 
                 top = az + share * uz + np.sqrt(radius * radius - square)
                 if top > height[y, x]:
                     height[y, x] = top
+                    if not painted:
+                        continue
                     surface[y, x, 0] = label
                     surface[y, x, 1] = (px * uy - py * ux) / (length * radius)
                     surface[y, x, 2] = along + share * length
@@ -52,7 +55,7 @@ def splat(points: Floats, radius: float, label: float, height: Images, surface: 
 
 @numba.njit(cache=True, fastmath=True)
 def shade(picture: Images, height: Images, surface: Images, shadow: Images, looks: Floats) -> None:
-    """Colour strands and shadows into a picture, in place.
+    """Colour strands into a picture, and shadows onto them, in place.
 
     Args:
         picture: Grey values, shape (H, W).
@@ -61,27 +64,40 @@ def shade(picture: Images, height: Images, surface: Images, shadow: Images, look
         shadow: Height of what keeps the light off each pixel, at most 0 for nothing.
         looks: One row a cable: radius [px], brightness, braid amplitude, braid period [px],
             braid slope, flank darkening, gloss, light direction [rad], shadow strength,
-            unevenness, dimming a pixel of height.
+            unevenness, dimming a pixel of height, gloss sharpness, stripe brightness over
+            its own, stripe period [px], stripe slope, stripe share, outline darkening, bead
+            darkening, bead period [px].
     """
     rows, columns = height.shape
     for y in range(rows):
         for x in range(columns):
             if height[y, x] <= 0.0:
-                if shadow[y, x] > 0.0:
-                    picture[y, x] *= 1.0 - looks[0, 8]
                 continue
             look = looks[int(surface[y, x, 0])]
             across, along, direction = surface[y, x, 1], surface[y, x, 2], surface[y, x, 3]
-            flank = 1.0 - look[5] * across * across
             side = across * np.sin(look[7] - direction)
-            phase = 2.0 * np.pi * along / look[3]
-            slope = look[4] * across
-            braid = look[2] * np.sin(phase + slope) * np.sin(phase - slope)
-            value = look[1] * flank * (1.0 + 0.25 * look[5] * side) * (1.0 + braid)
-            slow = 2.0 * np.pi * along / (look[0] * 2.0)
-            value *= 1.0 + look[9] * (np.sin(0.11 * slow) + np.sin(0.043 * slow + 1.0))
+            value = look[1] * (1.0 - look[5] * across * across) * (1.0 + 0.25 * look[5] * side)
+            if look[2] != 0.0:
+                phase = 2.0 * np.pi * along / look[3]
+                slope = look[4] * across
+                value *= 1.0 + look[2] * np.sin(phase + slope) * np.sin(phase - slope)
+            if look[12] != 1.0:
+                turn = along / look[13] + look[14] * across / (2.0 * np.pi)
+                if turn - np.floor(turn) < look[15]:
+                    value *= look[12]
+            if look[9] != 0.0:
+                slow = 2.0 * np.pi * along / (look[0] * 2.0)
+                value *= 1.0 + look[9] * (np.sin(0.11 * slow) + np.sin(0.043 * slow + 1.0))
             value *= max(1.0 + look[10] * (height[y, x] - 2.0 * look[0]), 0.5)
-            value += look[6] * np.exp(-8.0 * (across - 0.4 * np.sin(look[7] - direction)) ** 2)
+            if look[17] > 0.0:
+                piece = along / look[18]
+                value *= 1.0 - look[17] * (2.0 * abs(piece - np.floor(piece) - 0.5)) ** 6
+            if look[6] > 0.0:
+                off = across - 0.4 * np.sin(look[7] - direction)
+                value += look[6] * np.exp(-look[11] * off * off)
+            # A line of a pixel or a sixth of the width, whatever is more.
+            if look[16] > 0.0 and abs(across) > 1.0 - max(0.33, 1.0 / look[0]):
+                value *= 1.0 - look[16]
             if shadow[y, x] > height[y, x] + 0.3 * look[0]:
                 value *= 1.0 - look[8]
             picture[y, x] = value

@@ -10,7 +10,8 @@ from scipy.ndimage import gaussian_filter1d
 from perception.camera import GreyImage
 from perception.training import contact, curves
 from perception.training.connectors import Connector
-from perception.training.render import draw_look, render
+from perception.training.looks import Look, draw_look
+from perception.training.render import render
 from perception.training.waypoints import SPACING
 
 Floats = NDArray[np.float64]
@@ -19,6 +20,8 @@ Floats = NDArray[np.float64]
 FirstOver = Callable[[float, float], bool | None]
 
 MOST_NODES = 1400
+# Fewest nodes in view, and how often new curves are drawn to have them.
+FEWEST_NODES, TRIES = 60, 6
 # Share of further cables that run along another one for a while.
 NEAR_ANOTHER = 0.45
 SHARES = {
@@ -37,11 +40,13 @@ class SceneCable:
 
     Attributes:
         points_px: Centre line, half a cable width apart, shape (N, 2).
-        heights: Height of the centre line above the table [cable widths], shape (N,).
+        heights: Height of the centre line above the table [widths of the scene], shape (N,).
+        width_px: Width of this cable.
     """
 
     points_px: Floats
     heights: Floats
+    width_px: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,9 +63,10 @@ class Scene:
 
     Attributes:
         image: Grey image.
-        width_px: Width of the cables.
+        width_px: Width of the cables; single ones may differ from it.
         cables: Their centre lines.
-        crossings: Where strands cross; those at nearly one height are left out.
+        crossings: Where strands cross; those at nearly one height, or under a connector, are
+            left out.
         connectors: Plugs and adapters at the ends of the cables.
     """
 
@@ -83,6 +89,8 @@ class SceneConfig:
         family: One family of curves, or None for all.
         cables: Number of cables, or None for 1 to 3.
         bright: Whether cables are brighter than the table, or None for either.
+        style: One of `perception.training.looks.STYLES`, or None for any.
+        leaving: Share of scenes that are moved aside, so that more strands leave the view.
     """
 
     extent: float = 46.0
@@ -92,12 +100,14 @@ class SceneConfig:
     family: str | None = None
     cables: int | None = None
     bright: bool | None = None
+    style: str | None = None
+    leaving: float = 0.15
 
 
 def make_scene(rng: np.random.Generator, config: SceneConfig | None = None) -> Scene:
     """Draw a scene."""
     config = config or SceneConfig()
-    return lay_scene(rng, _lines(rng, config), config)
+    return lay_scene(rng, _seen_lines(rng, config), config)
 
 
 def lay_scene(
@@ -118,25 +128,45 @@ def lay_scene(
     width_px = float(np.exp(rng.uniform(np.log(config.narrowest_px), np.log(config.widest_px))))
     side_px = int(config.extent * width_px)
     size_px = config.size_px or (side_px, side_px)
-    nodes, cable = _settled(rng, lines, first_over)
+    look = draw_look(rng, len(lines), config.bright, config.style)
+    nodes, cable = _settled(rng, lines, look, first_over)
     parts = [nodes[cable == k] for k in range(len(lines))]
     origin_px = np.array([size_px[1] - side_px, size_px[0] - side_px]) / 2.0
-    look = draw_look(rng, len(lines), config.bright)
     strands = [
         np.column_stack([part[:, :2] * width_px + origin_px, part[:, 2] * width_px])
         for part in parts
     ]
     image, connectors = render(rng, strands, width_px, size_px, look)
-    return Scene(
-        image,
-        width_px,
-        tuple(
-            SceneCable(strand[:, :2], part[:, 2])
-            for strand, part in zip(strands, parts, strict=True)
-        ),
-        _true_crossings(nodes, cable),
-        connectors,
+    cables = tuple(
+        SceneCable(strand[:, :2], part[:, 2], own.width * width_px)
+        for strand, part, own in zip(strands, parts, look.cables, strict=True)
     )
+    crossings = _true_crossings(nodes, cable)
+    seen = [each for each in crossings if not _covered(each, cables, connectors)]
+    return Scene(image, width_px, cables, tuple(seen), connectors)
+
+
+def _covered(
+    crossing: SceneCrossing, cables: Sequence[SceneCable], connectors: Sequence[Connector]
+) -> bool:
+    """Say whether a connector hides a crossing."""
+    which, node = crossing.over
+    line = cables[which].points_px
+    place = np.array([np.interp(node, np.arange(len(line)), axis) for axis in line.T])
+    return any(connector.hides(place) for connector in connectors)
+
+
+def _seen_lines(rng: np.random.Generator, config: SceneConfig) -> list[Floats]:
+    """Return centre lines of which enough lies in view."""
+    aside = rng.uniform(-0.35, 0.35, 2) * config.extent * (rng.random() < config.leaving)
+    lines: list[Floats] = []
+    for _ in range(TRIES):
+        lines = [line + aside for line in _lines(rng, config)]
+        points = np.vstack([*lines, np.zeros((0, 2))])
+        inside = (points > 0.0).all(axis=1) & (points < config.extent).all(axis=1)
+        if inside.sum() >= FEWEST_NODES:
+            break
+    return lines
 
 
 def _lines(rng: np.random.Generator, config: SceneConfig) -> list[Floats]:
@@ -158,7 +188,7 @@ def _lines(rng: np.random.Generator, config: SceneConfig) -> list[Floats]:
 
 
 def _settled(
-    rng: np.random.Generator, lines: Sequence[Floats], first_over: FirstOver | None
+    rng: np.random.Generator, lines: Sequence[Floats], look: Look, first_over: FirstOver | None
 ) -> tuple[Floats, NDArray[np.int64]]:
     """Choose what lies over what, and part the strands; returns balls and their cables."""
     xy = np.vstack(lines)
@@ -173,7 +203,8 @@ def _settled(
             upper = first if known else second
         heights += 0.7 * np.exp(-(((number - upper) * SPACING / 1.5) ** 2))
     nodes = np.column_stack([xy, heights])
-    contact.settle(nodes, cable, contact.near_pairs(xy, cable), 40)
+    widths = np.array([own.width for own in look.cables])
+    contact.settle(nodes, cable, contact.near_pairs(xy, cable), 40, widths)
     return nodes, cable
 
 

@@ -52,7 +52,7 @@ def test_settling_parts_balls_that_overlap():
     nodes, cable = np.vstack([line, other]), np.repeat([0, 1], 40)
     pairs = contact.near_pairs(np.ascontiguousarray(nodes[:, :2]), cable)
     before = np.linalg.norm(nodes[pairs[:, 0]] - nodes[pairs[:, 1]], axis=1).min()
-    contact.settle(nodes, cable, pairs, 60)
+    contact.settle(nodes, cable, pairs, 60, np.ones(2))
     after = np.linalg.norm(nodes[pairs[:, 0]] - nodes[pairs[:, 1]], axis=1).min()
     assert before < 0.4
     assert after > 0.8
