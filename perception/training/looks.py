@@ -166,7 +166,11 @@ class Look:
 
 
 def draw_look(
-    rng: np.random.Generator, cables: int, bright: bool | None = None, style: str | None = None
+    rng: np.random.Generator,
+    cables: int,
+    bright: bool | None = None,
+    style: str | None = None,
+    alike: bool | None = None,
 ) -> Look:
     """Draw a look of a scene.
 
@@ -175,6 +179,7 @@ def draw_look(
         cables: How many cables there are.
         bright: Whether cables are brighter than the table; None for three fifths of all.
         style: One of `STYLES`; None for any.
+        alike: Whether all cables look the same; None for half of all.
     """
     style = style or str(rng.choice(list(STYLES), p=list(STYLES.values())))
     contrast = rng.uniform(25.0, 60.0) if _chance(rng, 0.25) else rng.uniform(45.0, 195.0)
@@ -182,7 +187,7 @@ def draw_look(
     drawn_bright = _chance(rng, 0.6)
     above = drawn_bright if bright is None else bright
     level, cable = (dark, dark + contrast) if above else (dark + contrast, dark)
-    looks = _cable_looks(rng, style, cable, level, cables)
+    looks = _cable_looks(rng, style, cable, level, cables, alike)
     return Look(
         style,
         _table(rng, style, level, cable),
@@ -268,20 +273,24 @@ def _gamma(rng: np.random.Generator, levels: tuple[float, ...]) -> float:
 
 
 def _cable_looks(
-    rng: np.random.Generator, style: str, brightness: float, table: float, cables: int
+    rng: np.random.Generator,
+    style: str,
+    brightness: float,
+    table: float,
+    cables: int,
+    alike: bool | None,
 ) -> tuple[CableLook, ...]:
     draw = _CABLES[style]
     first = _striped(rng, draw(rng, brightness, abs(brightness - table)), table)
-    alike = _chance(rng, 0.55)
-    widths_differ = _chance(rng, 0.3)
+    one_colour, one_width = (alike is not False and _chance(rng, p) for p in (0.55, 0.7))
     looks = []
     for _ in range(cables):
         look = first
-        if not alike:
+        if not (alike or one_colour):
             other = _other_brightness(rng, brightness, table)
             look = draw(rng, other, abs(other - table)) if _chance(rng, 0.5) else look
             look = _striped(rng, replace(look, brightness=other), table)
-        if widths_differ:
+        if not (alike or one_width):
             look = replace(look, width=float(np.exp(np.clip(rng.normal(0, 0.16), -0.35, 0.35))))
         looks.append(look)
     return tuple(looks)

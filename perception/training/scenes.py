@@ -90,6 +90,7 @@ class SceneConfig:
         cables: Number of cables, or None for 1 to 3.
         bright: Whether cables are brighter than the table, or None for either.
         style: One of `perception.training.looks.STYLES`, or None for any.
+        alike: Whether all cables look the same, or None for half of all scenes.
         leaving: Share of scenes that are moved aside, so that more strands leave the view.
     """
 
@@ -101,6 +102,7 @@ class SceneConfig:
     cables: int | None = None
     bright: bool | None = None
     style: str | None = None
+    alike: bool | None = None
     leaving: float = 0.15
 
 
@@ -128,7 +130,7 @@ def lay_scene(
     width_px = float(np.exp(rng.uniform(np.log(config.narrowest_px), np.log(config.widest_px))))
     side_px = int(config.extent * width_px)
     size_px = config.size_px or (side_px, side_px)
-    look = draw_look(rng, len(lines), config.bright, config.style)
+    look = draw_look(rng, len(lines), config.bright, config.style, config.alike)
     nodes, cable = _settled(rng, lines, look, first_over)
     parts = [nodes[cable == k] for k in range(len(lines))]
     origin_px = np.array([size_px[1] - side_px, size_px[0] - side_px]) / 2.0
