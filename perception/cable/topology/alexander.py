@@ -7,6 +7,7 @@ crossing. Any minor of it is the polynomial up to a factor +-t^k (J. W. Alexande
 """
 
 from perception.cable.topology.diagram import Diagram
+from perception.cable.topology.polynomial import signed_digits
 
 
 def alexander_polynomial(diagram: Diagram) -> tuple[int, ...]:
@@ -18,13 +19,7 @@ def alexander_polynomial(diagram: Diagram) -> tuple[int, ...]:
     # Rows hold at most four units, so coefficients stay below 4^(n-1), and the value at
     # one large enough power of two has them all as its digits (Kronecker substitution).
     bits = 2 * size + 2
-    value = _minor(diagram, 1 << bits)
-    digits = []
-    while value:
-        digit = value & ((1 << bits) - 1)
-        digit -= (digit >> (bits - 1)) << bits
-        digits.append(digit)
-        value = (value - digit) >> bits
+    digits = signed_digits(_minor(diagram, 1 << bits), bits)
     while digits and digits[0] == 0:
         digits.pop(0)
     sign = -1 if digits and digits[0] < 0 else 1

@@ -4,15 +4,20 @@ An unknot is proved by moves that end without crossings. A knot is proved by a c
 arcs get colours from the numbers modulo a prime p, such that at every crossing the colour
 that leaves below is t times the one that enters below, plus 1 - t times the one on top. An
 unknot has only colourings with one colour, and moves keep how many colourings there are (for
-t = -1: R. H. Fox 1962; in general: colourings by Alexander quandles, D. Joyce 1982).
+t = -1: R. H. Fox 1962; in general: colourings by Alexander quandles, D. Joyce 1982). A knot that
+no colouring tells is proved by its Jones polynomial, which anybody can add up anew.
 """
 
 from dataclasses import dataclass
+from functools import cache
 
 from perception.cable.topology.alexander import alexander_polynomial
 from perception.cable.topology.diagram import Diagram
-from perception.cable.topology.simplify import Step, simplification
-from perception.cable.topology.verdict import Knottedness, Verdict, judge
+from perception.cable.topology.jones import jones_polynomial
+from perception.cable.topology.moves import Step
+from perception.cable.topology.polynomial import Laurent
+from perception.cable.topology.simplify import reached
+from perception.cable.topology.verdict import Knottedness, Proof, Verdict, judge, reduction
 
 # Roots of the polynomial are looked for modulo primes up to here.
 LARGEST_PRIME = 400
@@ -39,11 +44,14 @@ class Certificate:
 
     Attributes:
         steps: Moves, in order.
-        colouring: Colours of the diagram they lead to; None where it has no crossings.
+        colouring: Colours of the diagram they lead to; None where it has no crossings, or where
+            only the Jones polynomial proves a knot.
+        jones: The Jones polynomial of that diagram where it is the proof.
     """
 
     steps: tuple[Step, ...]
-    colouring: Colouring | None
+    colouring: Colouring | None = None
+    jones: Laurent | None = None
 
 
 def certify(diagram: Diagram) -> tuple[Verdict, Certificate | None]:
@@ -54,11 +62,13 @@ def certify(diagram: Diagram) -> tuple[Verdict, Certificate | None]:
     """
     if not diagram.is_planar():
         return judge(diagram, None), None
-    steps = simplification(diagram)
-    reduced = steps[-1].after if steps else diagram
+    steps = reduction(diagram)
+    reduced = reached(diagram, steps)
     verdict = judge(diagram, reduced)
     if not reduced.visits:
-        return verdict, Certificate(steps, None)
+        return verdict, Certificate(steps)
+    if verdict.proof is Proof.JONES:
+        return verdict, Certificate(steps, jones=jones_polynomial(reduced))
     colouring = find_colouring(reduced) if verdict.state is Knottedness.KNOTTED else None
     return verdict, None if colouring is None else Certificate(steps, colouring)
 
@@ -74,6 +84,7 @@ def find_colouring(diagram: Diagram) -> Colouring | None:
     return None
 
 
+@cache
 def _primes(largest: int) -> list[int]:
     return [n for n in range(3, largest) if all(n % k for k in range(2, int(n**0.5) + 1))]
 

@@ -75,6 +75,23 @@ class Diagram:
         signs = tuple(-s if c in crossings else s for c, s in enumerate(self.signs))
         return Diagram(self.visits, over, signs)
 
+    def cyclic_name(self) -> tuple[int, ...]:
+        """Return what does not depend on where the curve starts and how crossings are numbered.
+
+        Each visit is told by how far on the other visit of its crossing is, which is on top and
+        the sign; of all ways to turn this round, the smallest is taken.
+        """
+        count, signs = len(self.visits), self.signs
+        code = [
+            ((other - place) % count * 2 + on_top) * 2 + (signs[crossing] > 0)
+            for place, (other, crossing, on_top) in enumerate(
+                zip(self.partners(), self.visits, self.over, strict=True)
+            )
+        ]
+        least, twice = min(code, default=0), tuple(code * 2)
+        starts = [place for place in range(count) if code[place] == least]
+        return min((twice[place : place + count] for place in starts), default=())
+
     def mirrored(self) -> "Diagram":
         """Return the mirror image: over and under exchanged everywhere."""
         return self.swapped(frozenset(range(len(self))))

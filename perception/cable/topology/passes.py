@@ -7,6 +7,7 @@ crossings, are special cases, so shortening runs until none gets shorter simplif
 
 from collections import deque
 from dataclasses import dataclass
+from functools import lru_cache
 
 from perception.cable.topology.diagram import Diagram, compact
 
@@ -36,18 +37,21 @@ class _Map:
     """Faces of a diagram from which a run has been lifted; faces it divided are joined."""
 
     def __init__(self, diagram: Diagram, run: Run) -> None:
-        left, right, faces = diagram.faces()
-        count = len(diagram.visits)
+        left, right, faces = _faces_of(diagram)
+        count, other = len(diagram.visits), diagram.partners()
         self.parent = list(range(faces))
         lifted = {(run.start - 1 + step) % count for step in range(run.length + 1)}
         for edge in lifted:
             self.parent[self._root(left[edge])] = self._root(right[edge])
         self.source = self._root(left[(run.start - 1) % count])
         self.target = self._root(left[(run.start + run.length - 1) % count])
+        # Where the run passed another strand, one edge is left of two.
+        joined = {other[(run.start + step) % count] for step in range(run.length)}
+        second = {edge for edge in joined if (edge - 1) % count not in lifted}
         self.doors: list[list[tuple[int, int, bool]]] = [[] for _ in range(faces)]
         for edge in range(count):
             a, b = self._root(left[edge]), self._root(right[edge])
-            if edge not in lifted and a != b:
+            if a != b and edge not in lifted and edge not in second:
                 self.doors[a].append((b, edge, True))
                 self.doors[b].append((a, edge, False))
 
@@ -82,14 +86,37 @@ class _Map:
         return [way for _, way in ways]
 
 
+@lru_cache(maxsize=64)
+def _faces_of(diagram: Diagram) -> tuple[list[int], list[int], int]:
+    """Return the faces of a diagram, which all of its runs ask for."""
+    return diagram.faces()
+
+
+def shortcut(diagram: Diagram, run: Run) -> Diagram | None:
+    """Return the diagram with `run` laid along a way that saves crossings; None for none."""
+    lifted = _Map(diagram, run)
+    if lifted.distances()[lifted.source] >= run.length:
+        return None
+    return lay(diagram, run, lifted.shortest_ways(1)[0])
+
+
 def reroutes(diagram: Diagram, run: Run, limit: int = 1) -> list[Diagram]:
     """Return the diagrams with `run` laid along its shortest ways, at most `limit` of them."""
     ways = _Map(diagram, run).shortest_ways(limit)
-    return [_lay(diagram, run, way) for way in ways]
+    return [lay(diagram, run, way) for way in ways]
 
 
-def _lay(diagram: Diagram, run: Run, way: list[tuple[int, bool]]) -> Diagram:
-    """Return the diagram with the crossings of `run` replaced by those along `way`."""
+def lay(diagram: Diagram, run: Run, way: list[tuple[int, bool]]) -> Diagram:
+    """Return the diagram with the crossings of `run` replaced by those along `way`.
+
+    Args:
+        diagram: The diagram.
+        run: What is lifted.
+        way: Each edge that is crossed instead, and whether it is crossed from its left.
+
+    Returns:
+        The diagram; it starts with the visits of the new way.
+    """
     count, on_top = len(diagram.visits), diagram.over[run.start]
     lifted = {diagram.visits[(run.start + step) % count] for step in range(run.length)}
     sign_of = dict(enumerate(diagram.signs))

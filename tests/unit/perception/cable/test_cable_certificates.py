@@ -4,11 +4,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scrambled_diagrams import UNKNOT, scrambled
 
 from perception.cable.topology import Diagram, Knottedness, close_over, curve_crossings
 from perception.cable.topology.certificate import Certificate, certify, find_colouring
 from perception.cable.topology.checker import replay
-from perception.cable.topology.simplify import Step
+from perception.cable.topology.jones import jones_polynomial
+from perception.cable.topology.moves import MoveKind, Step, slides
+from perception.cable.topology.polynomial import ONE
 
 
 def _diagrams(seed, corners, count):
@@ -75,7 +78,7 @@ def test_a_move_that_changes_what_it_should_leave_is_refused():
         for number, step in enumerate(certificate.steps):
             for crossing in range(len(step.after)):
                 forged = step.after.swapped(frozenset({crossing}))
-                steps = (*certificate.steps[:number], Step(step.run, forged))
+                steps = (*certificate.steps[:number], Step(step.kind, step.run, forged))
                 checked = replay(diagram, Certificate(steps, None))
                 assert checked.flaw
                 refused += checked.flaw.startswith(f"move {number}")
@@ -89,3 +92,67 @@ def test_an_unfinished_unknotting_is_no_proof():
             cut = replace(certificate, steps=certificate.steps[:-1])
             if cut.steps[-1].after.visits:
                 assert replay(diagram, cut).flaw == "crossings are left"
+
+
+def _hard_certificates(count=12):
+    rng = np.random.default_rng(3)
+    diagrams = [scrambled(UNKNOT, rng, 14) for _ in range(count)] + _diagrams(4, 12, 40)
+    return [(diagram, certify(diagram)[1]) for diagram in diagrams]
+
+
+def _one_slide(diagram):
+    """A proof of nothing more than one Reidemeister III, by itself."""
+    return next(iter(slides(diagram)), None)
+
+
+def test_a_move_under_another_name_is_refused():
+    seen = set()
+    for diagram, certificate in _hard_certificates():
+        for number, step in enumerate(certificate.steps):
+            for kind in set(MoveKind) - {step.kind}:
+                forged = replace(step, kind=kind)
+                steps = (*certificate.steps[:number], forged, *certificate.steps[number + 1 :])
+                checked = replay(diagram, replace(certificate, steps=steps))
+                assert checked.state is Knottedness.UNDECIDED
+                assert checked.flaw == f"move {number}: it is called {kind} and is {step.kind}"
+                seen.add(step.kind)
+    assert seen >= {MoveKind.REIDEMEISTER_1, MoveKind.REIDEMEISTER_2, MoveKind.PASS}
+
+
+def test_slides_are_known_by_their_name_alone():
+    seen = 0
+    for diagram in _diagrams(5, 9, 60):
+        step = _one_slide(diagram)
+        if step is None:
+            continue
+        seen += 1
+        assert replay(diagram, Certificate((step,))).flaw in ("", "crossings are left")
+        for kind in set(MoveKind) - {step.kind}:
+            assert "is called" in replay(diagram, Certificate((replace(step, kind=kind),))).flaw
+        back = next(s for s in slides(step.after) if s.after.cyclic_name() == diagram.cyclic_name())
+        assert "is called" not in replay(diagram, Certificate((step, back))).flaw
+    assert seen > 15
+
+
+def test_a_run_laid_where_it_was_is_no_slide():
+    for diagram in _diagrams(6, 9, 40):
+        step = _one_slide(diagram)
+        if step is not None:
+            start = step.run.start
+            turned = Diagram(
+                diagram.visits[start:] + diagram.visits[:start],
+                diagram.over[start:] + diagram.over[:start],
+                diagram.signs,
+            )
+            forged = Step(MoveKind.REIDEMEISTER_3, step.run, turned)
+            assert "is pass" in replay(diagram, Certificate((forged,))).flaw
+
+
+def test_a_jones_polynomial_is_added_up_anew():
+    trefoil, other = _torus_knot(2, 3), _torus_knot(2, 5)
+    polynomial = jones_polynomial(trefoil)
+    honest = Certificate((), jones=polynomial)
+    assert replay(trefoil, honest).state is Knottedness.KNOTTED
+    assert "is another" in replay(other, honest).flaw
+    assert "is another" in replay(trefoil.mirrored(), honest).flaw
+    assert "unknot" in replay(trefoil, Certificate((), jones=ONE)).flaw
