@@ -19,7 +19,13 @@ Floats = NDArray[np.float64]
 
 WIDTH_M = 0.0066
 CONFIG = SceneConfig(
-    extent=180.0, size_px=(773, 1032), narrowest_px=5.0, widest_px=5.6, bright=True
+    extent=180.0,
+    size_px=(773, 1032),
+    narrowest_px=5.0,
+    widest_px=5.6,
+    bright=True,
+    style="photograph",
+    alike=True,
 )
 # What of the square of that extent the camera sees, less a margin.
 LOW, HIGH = np.array([6.0, 28.0]), np.array([174.0, 152.0])
@@ -148,7 +154,7 @@ def _prescribed(cores: Sequence[Core], lines: Sequence[Floats]) -> Prescribed | 
     starts = np.searchsorted(cable, np.arange(len(lines)))
     found = contact.crossings(xy, cable)
     spans = [
-        starts[k] + _span(core, line)
+        starts[k] + span(core, line)
         for k, (core, line) in enumerate(zip(cores, lines, strict=True))
     ]
     pairs: dict[tuple[float, float], bool] = {}
@@ -180,7 +186,7 @@ def _numbered(lines: Sequence[Floats]) -> tuple[Floats, NDArray[np.int64]]:
     return np.vstack(lines), np.repeat(np.arange(len(lines)), [len(line) for line in lines])
 
 
-def _span(core: Core, line: Floats) -> NDArray[np.int64]:
+def span(core: Core, line: Floats) -> NDArray[np.int64]:
     """Return the nodes at which a core begins and ends in its line."""
     ends = [int(np.linalg.norm(line - end, axis=1).argmin()) for end in core.points[[0, -1]]]
     return np.array(sorted(ends))
