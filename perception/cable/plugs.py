@@ -74,7 +74,7 @@ def find_plugs(
     labels, areas = np.asarray(tables[0]), np.asarray(tables[1])[:, cv2.CC_STAT_AREA]
     smallest, greatest = (area * mask.width_px**2 for area in config.areas_widths2)
     found = [
-        _plug(labels == label)
+        plug_of(labels == label)
         for label in sorted(range(1, count), key=lambda label: -areas[label])
         if smallest <= areas[label] <= greatest
     ]
@@ -96,7 +96,8 @@ def _odd(size_px: float) -> int:
     return 2 * round(0.5 * (size_px - 1.0)) + 1
 
 
-def _plug(body: Bools) -> Plug:
+def plug_of(body: Bools) -> Plug:
+    """Return the connector whose body shows at some pixels, shape (height, width)."""
     places = np.argwhere(body)[:, ::-1].astype(float)
     centre_px = places.mean(axis=0)
     _, axes = np.linalg.eigh(np.cov((places - centre_px).T))
