@@ -40,6 +40,7 @@ class SightTruth:
         image: Grey image.
         width_px: Width of the cables.
         cable: Which pixels show cable.
+        widths_px: How wide the cable at each of them is.
         connector: Which pixels show connectors.
         ends: Ends of cables, shape (N, 2), some of them outside the image.
         inwards: Unit vectors into the cable, shape (N, 2).
@@ -52,6 +53,7 @@ class SightTruth:
     image: GreyImage
     width_px: float
     cable: Bools
+    widths_px: NDArray[np.float32]
     connector: Bools
     ends: Floats
     inwards: Floats
@@ -78,7 +80,8 @@ def draw_truth(rng: np.random.Generator, side_px: int) -> SightTruth:
 
 def truth_of(scene: Scene) -> SightTruth:
     """Return what is to be seen in a scene."""
-    cable, connector, height = _masks(scene)
+    height, widths_px = _strands(scene)
+    cable, connector = _masks(scene, height)
     lines = [each.points_px for each in scene.cables]
     tips = np.array([line[end] for line in lines for end in (0, -1)])
     inner = np.array(
@@ -97,6 +100,7 @@ def truth_of(scene: Scene) -> SightTruth:
         image=scene.image,
         width_px=scene.width_px,
         cable=cable,
+        widths_px=widths_px,
         connector=connector,
         ends=tips,
         inwards=inwards / np.maximum(np.linalg.norm(inwards, axis=1, keepdims=True), 1e-9),
@@ -113,19 +117,25 @@ def truth_of(scene: Scene) -> SightTruth:
     )
 
 
-def _masks(scene: Scene) -> tuple[Bools, Bools, NDArray[np.float32]]:
-    """Return which pixels show cable and connector, and how high cable rises."""
+def _strands(scene: Scene) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+    """Return how high strands rise, and how wide the topmost one is, for each pixel."""
     size = scene.image.shape
-    height, unused = np.zeros(size, np.float32), np.zeros((*size, 4), np.float32)
-    for each in scene.cables:
+    height, surface = np.zeros(size, np.float32), np.zeros((*size, 4), np.float32)
+    for k, each in enumerate(scene.cables):
         strand = np.column_stack([each.points_px, each.heights * scene.width_px])
-        rasterise.splat(
-            resample(strand, scene.width_px / 4.0), 0.5 * each.width_px, 0.0, height, unused
-        )
+        fine = resample(strand, scene.width_px / 4.0)
+        rasterise.splat(fine, 0.5 * each.width_px, float(k), height, surface)
+    widths_px = np.array([each.width_px for each in scene.cables], np.float32)
+    return height, widths_px[surface[:, :, 0].astype(int)]
+
+
+def _masks(scene: Scene, height: NDArray[np.float32]) -> tuple[Bools, Bools]:
+    """Return which pixels show cable, and which connectors."""
+    size = scene.image.shape
     above = _outlined(size, [each for each in scene.connectors if not each.covered])
     below = _outlined(size, [each for each in scene.connectors if each.covered])
     cable = (height > 0.0) & ~above
-    return cable, above | (below & ~cable), height
+    return cable, above | (below & ~cable)
 
 
 def _outlined(size: tuple[int, ...], connectors: Sequence[Connector]) -> Bools:
@@ -198,6 +208,7 @@ def turned(truth: SightTruth, mirrored: bool, quarters: int) -> SightTruth:
         truth,
         image=pixels(truth.image),
         cable=pixels(truth.cable),
+        widths_px=pixels(truth.widths_px),
         connector=pixels(truth.connector),
         ends=places(truth.ends),
         inwards=vectors(truth.inwards),

@@ -34,7 +34,8 @@ def grid_of(truth: SightTruth) -> Maps:
     for place, mask in ((AT_CABLE, truth.cable), (CONNECTOR, truth.connector)):
         share = cv2.resize(mask.astype(np.float32), (columns, rows), interpolation=cv2.INTER_AREA)
         grid[place] = share > 0.5
-    grid[LOG_WIDTH] = np.log(truth.width_px)
+    half = STRIDE // 2
+    grid[LOG_WIDTH] = np.log(truth.widths_px[half::STRIDE, half::STRIDE])
     return grid
 
 
