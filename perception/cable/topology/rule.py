@@ -47,14 +47,19 @@ def _cancel_first(visits: list[Visit]) -> list[Visit] | None:
 
 def knot_intervals(visits: Sequence[Visit]) -> list[tuple[Visit, Visit]]:
     """Return the first and last visit of each potential knot, in the order of the curve."""
-    left, found, begin = cancel(visits), [], 0
-    while begin < len(left):
-        close = closing_visit(left, begin)
+    return uncancelled_intervals(cancel(visits))
+
+
+def uncancelled_intervals(visits: Sequence[Visit]) -> list[tuple[Visit, Visit]]:
+    """Return what `knot_intervals` returns of visits that are taken as they are."""
+    found, begin = [], 0
+    while begin < len(visits):
+        close = closing_visit(visits, begin)
         if close is None:
             begin += 1
         else:
-            found.append((left[begin], close))
-            begin = left.index(close) + 1
+            found.append((visits[begin], close))
+            begin = visits.index(close) + 1
     return found
 
 
