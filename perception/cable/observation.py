@@ -3,6 +3,7 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import Protocol
 
 import numpy as np
 
@@ -25,6 +26,14 @@ class Observation:
 
     mask: CableMask
     graph: SkeletonGraph
+
+
+class Observe(Protocol):
+    """Looks at an image; `observe` is one."""
+
+    def __call__(self, image: GreyImage, /) -> Observation | None:
+        """Return mask and graph of an image; None where no cable is seen."""
+        ...
 
 
 def observe(image: GreyImage, config: MaskConfig | None = None) -> Observation | None:

@@ -15,7 +15,7 @@ from scipy.spatial import cKDTree
 
 from perception.cable.endpoints import leaves_view
 from perception.cable.mask import CableMask
-from perception.cable.observation import observe
+from perception.cable.observation import Observe, observe
 from perception.cable.types import Endpoint, Points, Trace, TraceEnd
 from perception.camera import GreyImage
 
@@ -71,17 +71,21 @@ class _Path:
 
 
 class AnalyticTracer:
-    """Implements `Tracer` by searching all paths of steps over the mask."""
+    """Implements `Tracer` by searching all paths of steps over the mask.
 
-    def __init__(self, config: AnalyticConfig | None = None) -> None:
-        """Keep the settings."""
-        self._config = config or AnalyticConfig()
+    Args:
+        config: Settings.
+        observe: Looks at an image.
+    """
+
+    def __init__(self, config: AnalyticConfig | None = None, observe: Observe = observe) -> None:
+        self._config, self._observe = config or AnalyticConfig(), observe
 
     def trace(
         self, image: GreyImage, start_px: Points, endpoints: Sequence[Endpoint]
     ) -> Trace | None:
         """Follow the cable; see `Tracer.trace`."""
-        observation = observe(image)
+        observation = self._observe(image)
         if observation is None:
             return None
         search = _Search(observation.mask, endpoints, self._config)
@@ -96,7 +100,7 @@ class AnalyticTracer:
         Returns:
             The points, or None where the way is not clear: it stops, or it parts.
         """
-        observation = observe(image)
+        observation = self._observe(image)
         if observation is None:
             return None
         search = _Search(observation.mask, (), self._config)

@@ -15,7 +15,7 @@ import numpy as np
 from perception.cable.endpoints import leaves_view
 from perception.cable.graph import Arm, SkeletonGraph
 from perception.cable.mask import CableMask
-from perception.cable.observation import Observation, observe
+from perception.cable.observation import Observation, Observe, observe
 from perception.cable.polyline import arc_lengths, point_at, resample
 from perception.cable.tracers.centre_line import bend_between, smooth
 from perception.cable.tracers.junctions import JunctionConfig, Junctions, find_junctions
@@ -60,17 +60,23 @@ class SkeletonTracerConfig:
 
 
 class SkeletonTracer:
-    """Implements `Tracer` on the skeleton graph of the cable mask."""
+    """Implements `Tracer` on the skeleton graph of the cable mask.
 
-    def __init__(self, config: SkeletonTracerConfig | None = None) -> None:
-        """Keep the settings."""
-        self._config = config or SkeletonTracerConfig()
+    Args:
+        config: Settings.
+        observe: Looks at an image.
+    """
+
+    def __init__(
+        self, config: SkeletonTracerConfig | None = None, observe: Observe = observe
+    ) -> None:
+        self._config, self._observe = config or SkeletonTracerConfig(), observe
 
     def trace(
         self, image: GreyImage, start_px: Points, endpoints: Sequence[Endpoint]
     ) -> Trace | None:
         """Follow the cable; see `Tracer.trace`."""
-        observation = observe(image)
+        observation = self._observe(image)
         return self.trace_observed(observation, start_px, endpoints) if observation else None
 
     def trace_observed(
