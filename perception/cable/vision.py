@@ -15,12 +15,10 @@ from perception.cable.classifiers.edges import EdgeClassifier
 from perception.cable.coverage import explained_share
 from perception.cable.covered_ends import ends_are_clear
 from perception.cable.crowding import doubt_shared
-from perception.cable.endpoints import EndpointConfig
+from perception.cable.eyes import Eye, ThresholdEye
 from perception.cable.grasp_points import GraspConfig
 from perception.cable.interfaces import CrossingClassifier, Tracer
 from perception.cable.knots import find_knots
-from perception.cable.observation import observe
-from perception.cable.plug_ends import find_ends
 from perception.cable.tracers.analytic import AnalyticTracer
 from perception.cable.tracers.skeleton import SkeletonTracer
 from perception.cable.types import CableScene, Crossing, Endpoint, Knot, Points, Trace, TraceEnd
@@ -28,8 +26,15 @@ from perception.cable.wholeness import wholeness
 from perception.camera import GreyImage
 
 
-def _learned_tracer() -> Tracer:
-    # Networks need the extra `learn`; who does not ask for them does without.
+# Networks need the extra `learn`; who does not ask for them does without.
+def _learned_eye() -> Eye:
+    from perception.cable.sight.eye import SightEye
+    from perception.models.store import FOLDER
+
+    return SightEye(FOLDER / "sight_v1")
+
+
+def _learned_tracer(_: Eye) -> Tracer:
     from perception.cable.tracers.both_ways import BothWaysTracer
     from perception.cable.tracers.learned import LearnedTracer
     from perception.models.store import FOLDER
@@ -37,14 +42,23 @@ def _learned_tracer() -> Tracer:
     return BothWaysTracer(LearnedTracer(FOLDER / "tracer_v2"))
 
 
-TRACERS: dict[str, Callable[[], Tracer]] = {
-    "skeleton": SkeletonTracer,
-    "analytic": AnalyticTracer,
+def _learned_classifier() -> CrossingClassifier:
+    from perception.cable.classifiers.learned import LearnedClassifier
+    from perception.models.store import FOLDER
+
+    return LearnedClassifier(FOLDER / "crossing_v1")
+
+
+EYES: dict[str, Callable[[], Eye]] = {"thresholds": ThresholdEye, "learned": _learned_eye}
+TRACERS: dict[str, Callable[[Eye], Tracer]] = {
+    "skeleton": lambda eye: SkeletonTracer(observe=eye.observe),
+    "analytic": lambda eye: AnalyticTracer(observe=eye.observe),
     "learned": _learned_tracer,
 }
 CLASSIFIERS: dict[str, Callable[[], CrossingClassifier]] = {
     "edges": EdgeClassifier,
     "continuity": ContinuityClassifier,
+    "learned": _learned_classifier,
 }
 
 # Tracers finish up to this far from an end.
@@ -58,20 +72,20 @@ class ClassicVisionConfig:
     """Settings of classic cable perception.
 
     Attributes:
+        eye: What cable and ends are seen with.
         tracer: How cables are followed.
         classifier: How over and under are told apart.
         start_steps: Steps of the analytic tracer that make the start of a trace.
         hidden_rows: Lowest rows that show the robot instead of the table; they are cut off, so
             that cable which goes there leaves the view (thesis: 130).
-        endpoints: The search for ends.
         grasps: The search for cage and pinch points.
     """
 
+    eye: Literal["thresholds", "learned"] = "thresholds"
     tracer: Literal["skeleton", "analytic", "learned"] = "skeleton"
-    classifier: Literal["edges", "continuity"] = "edges"
+    classifier: Literal["edges", "continuity", "learned"] = "edges"
     start_steps: int = 6
     hidden_rows: int = 0
-    endpoints: EndpointConfig = field(default_factory=EndpointConfig)
     grasps: GraspConfig = field(default_factory=GraspConfig)
 
 
@@ -81,13 +95,14 @@ class ClassicCableVision:
     def __init__(self, config: ClassicVisionConfig | None = None) -> None:
         """Build the steps that the settings name."""
         self._config = config or ClassicVisionConfig()
-        self._tracer = TRACERS[self._config.tracer]()
+        self._eye = EYES[self._config.eye]()
+        self._tracer = TRACERS[self._config.tracer](self._eye)
         self._classifier = CLASSIFIERS[self._config.classifier]()
-        self._starter = AnalyticTracer()
+        self._starter = AnalyticTracer(observe=self._eye.observe)
 
     def cable_pixels(self, image: GreyImage) -> NDArray[np.bool_]:
         """Say which pixels show cable or connector, shape (height, width)."""
-        observation = observe(self._seen(image))
+        observation = self._eye.observe(self._seen(image))
         if observation is None:
             return np.zeros(image.shape, dtype=bool)
         hidden = [(0, self._config.hidden_rows), (0, 0)]
@@ -95,17 +110,14 @@ class ClassicCableVision:
 
     def pieces(self, image: GreyImage) -> tuple[Points, ...]:
         """Return unbranched pieces of centre line, longest first, shape (N, 2) each."""
-        observation = observe(self._seen(image))
+        observation = self._eye.observe(self._seen(image))
         edges = observation.graph.edges if observation is not None else ()
         ordered = sorted(edges, key=lambda edge: -edge.length_px)
         return tuple(edge.points_px for edge in ordered)
 
     def endpoints(self, image: GreyImage) -> tuple[Endpoint, ...]:
         """Find the ends of cables, the surest first."""
-        observation = observe(self._seen(image))
-        if observation is None:
-            return ()
-        return find_ends(observation.mask, observation.graph, self._config.endpoints)
+        return self._eye.endpoints(self._seen(image))
 
     def start_points(self, image: GreyImage, endpoint: Endpoint) -> Points | None:
         """Follow the cable for about 96 px from an end; None when other strands are too near."""
@@ -123,7 +135,8 @@ class ClassicCableVision:
         tracer was of each step.
         """
         seen = self._seen(image)
-        trace, observation = self._tracer.trace(seen, start_px, endpoints), observe(seen)
+        trace = self._tracer.trace(seen, start_px, endpoints)
+        observation = self._eye.observe(seen)
         if trace is None or observation is None:
             return None
         if trace.end is not TraceEnd.ENDPOINT:
