@@ -52,7 +52,9 @@ class SightTask:
             rng = np.random.default_rng([seed, number])
             fresh = max(size // FRESH, 1) if len(pool) >= size else size
             for _ in range(fresh):
-                pool.append(draw_truth(np.random.default_rng([seed, number, 1]), SIDE_PX))
+                pool.append(
+                    draw_truth(np.random.default_rng([seed, number, 1]), (SIDE_PX, SIDE_PX))
+                )
                 number += stride
             del pool[:-POOL]
             chosen = rng.choice(len(pool), size, replace=False)

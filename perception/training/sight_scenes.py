@@ -63,12 +63,12 @@ class SightTruth:
     tangles: Floats
 
 
-def draw_truth(rng: np.random.Generator, side_px: int) -> SightTruth:
-    """Draw a scene of cables of any width that fills a square."""
+def draw_truth(rng: np.random.Generator, size_px: tuple[int, int]) -> SightTruth:
+    """Draw a scene of cables of any width that fills an image (height, width)."""
     width_px = float(np.exp(rng.uniform(np.log(NARROWEST_PX), np.log(WIDEST_PX))))
     config = SceneConfig(
-        extent=side_px / width_px * rng.uniform(0.75, 1.25),
-        size_px=(side_px, side_px),
+        extent=max(size_px) / width_px * rng.uniform(0.75, 1.25),
+        size_px=size_px,
         narrowest_px=width_px,
         widest_px=width_px,
     )
