@@ -62,6 +62,24 @@ class SightTruth:
     crossings: Floats
     tangles: Floats
 
+    @property
+    def shown(self) -> Bools:
+        """Which pixels show cable or connector."""
+        pixels: Bools = self.cable | self.connector
+        return pixels
+
+    @property
+    def usual_width_px(self) -> float:
+        """Width that most of the cable in view has; that of the scene where there is none."""
+        return float(np.median(self.widths_px[self.cable])) if self.cable.any() else self.width_px
+
+    def clear_ends(self, border_widths: float) -> Bools:
+        """Say which ends can be seen and are not near to the border, shape (N,)."""
+        last = np.array(self.image.shape[::-1]) - 1
+        depth = np.minimum(self.ends, last - self.ends).min(axis=1)
+        clear: Bools = self.visible & (depth > border_widths * self.width_px)
+        return clear
+
 
 def draw_truth(rng: np.random.Generator, size_px: tuple[int, int]) -> SightTruth:
     """Draw a scene of cables of any width that fills an image (height, width)."""
