@@ -1,5 +1,7 @@
 """The cable's width, and its pixels, whichever of cable and table is the brighter."""
 
+from collections.abc import Sequence
+
 import cv2
 import numpy as np
 
@@ -20,6 +22,9 @@ BORDER = 0.28
 WIDER = 0.75
 # A profile must rise above its own noise by this factor, and by so many grey values.
 CLEAR, LEAST = 4.0, 8.0
+# Lines are looked at in pieces of this length; a typical width takes at least so many.
+PIECE_PX, LEAST_PIECES, MOST_PIECES = 24.0, 4, 40
+USUAL_PX = 6.0
 
 
 def mask_under(image: GreyImage, on_cable_px: Points) -> CableMask | None:
@@ -57,6 +62,32 @@ def cable_width(image: GreyImage, start_px: Points) -> float | None:
     if across is None or across > WIDER * mask.width_px:
         return mask.width_px
     return across
+
+
+def width_under(image: GreyImage, lines_px: Sequence[Points]) -> float:
+    """Return the width of cables along given lines, from many short pieces of them.
+
+    Where too few profiles show a cable, the mask tells, and where there is none, cables are taken
+    to be `USUAL_PX` wide.
+
+    Args:
+        image: Grey image.
+        lines_px: Centre lines, shape (N, 2) each.
+    """
+    length_px = sum(float(arc_lengths(line)[-1]) for line in lines_px)
+    every_px = max(PIECE_PX, length_px / MOST_PIECES)
+    pieces = [piece for line in lines_px for piece in _pieces(line, every_px)]
+    widths = [found for piece in pieces if (found := width_across(image, piece)) is not None]
+    if len(widths) >= LEAST_PIECES:
+        return float(np.median(widths))
+    mask = mask_under(image, np.vstack(lines_px))
+    return mask.width_px if mask is not None else USUAL_PX
+
+
+def _pieces(line: Points, every_px: float) -> list[Points]:
+    arcs = arc_lengths(line)
+    starts = np.arange(0.0, arcs[-1] - PIECE_PX, every_px)
+    return [point_at(line, arcs, start + np.linspace(0.0, PIECE_PX, 7)) for start in starts]
 
 
 def width_across(image: GreyImage, line_px: Points) -> float | None:

@@ -11,12 +11,18 @@ from torch.nn.utils.fusion import fuse_conv_bn_eval
 
 from executive.core.errors import InputError
 from perception.models.crossing_net import CrossingNet
+from perception.models.crossing_ribbon_net import CrossingRibbonNet
+from perception.models.sight_net import SightNet
+from perception.models.thesis_crossing_net import ThesisCrossingNet
 from perception.models.tracer_net import TracerNet
 
 FOLDER = Path(__file__).parent
 NETWORKS: dict[str, Callable[[Sequence[int], float], nn.Module]] = {
     "tracer": TracerNet,
     "crossing": lambda widths, _: CrossingNet(widths),
+    "sight": lambda widths, _: SightNet(widths),
+    "crossing_ribbons": lambda widths, _: CrossingRibbonNet(widths),
+    "thesis_crossing": lambda widths, _: ThesisCrossingNet(widths),
 }
 
 
@@ -27,6 +33,7 @@ class ModelConfig(BaseModel):
         network: Which network.
         widths: Its numbers of channels.
         temperature: What its logits are divided by, from held-out data.
+        bias: What is then added to them.
         zoom: Pixels of a crop a unit of `perception.models.frames`.
     """
 
@@ -35,6 +42,7 @@ class ModelConfig(BaseModel):
     network: str
     widths: tuple[int, ...]
     temperature: float = 1.0
+    bias: float = 0.0
     zoom: float = 1.0
 
 

@@ -17,34 +17,21 @@ from perception.cable.tracers.modes import find_modes
 from perception.models.frames import Floats
 from perception.models.store import load_network, read_config
 from perception.models.tracer_math import step_logits
-from perception.training.calibration import (
-    expected_calibration_error,
-    fit_temperature,
-    selective_error,
-)
+from perception.training.calibration import figures
 from perception.training.crossing import CrossingTask
+from perception.training.crossing_calibration import (
+    BATCH,
+    FIT_SEED,
+    MEASURE_SEED,
+    calibrate_crossing,
+    calibrate_thesis,
+)
 from perception.training.loop import Task
+from perception.training.thesis_crossing import ThesisCrossingTask
 from perception.training.tracer import HIT_CROP_PX, TracerTask
 from perception.training.tracer_samples import NOWHERE
 
-FIT_SEED, MEASURE_SEED = 910_001, 920_001
-BATCH = 128
 STEP_TEMPERATURES = tuple(round(0.7 + 0.1 * k, 1) for k in range(14))
-
-
-@torch.inference_mode()
-def calibrate_crossing(network: nn.Module, batches: int) -> tuple[float, dict[str, float]]:
-    """Return temperature and figures of a crossing network."""
-    temperature = fit_temperature(_crossing_logits(network, FIT_SEED, batches))
-    logits = _crossing_logits(network, MEASURE_SEED, batches) / temperature
-    belief = torch.sigmoid(logits).double().numpy()
-    confidence, right = np.maximum(belief, 1.0 - belief), (belief > 0.5).astype(float)
-    return temperature, _figures(confidence, right)
-
-
-def _crossing_logits(network: nn.Module, seed: int, batches: int) -> Tensor:
-    stream = CrossingTask().batches(seed, 0, 1, BATCH)
-    return torch.cat([network(next(stream)[0]).float() for _ in range(batches)])
 
 
 def calibrate_tracer(network: nn.Module, batches: int) -> tuple[float, dict[str, float]]:
@@ -52,7 +39,7 @@ def calibrate_tracer(network: nn.Module, batches: int) -> tuple[float, dict[str,
     logits, targets = _tracer_logits(network, FIT_SEED, batches)
     temperature = min(STEP_TEMPERATURES, key=lambda t: _log_loss(*_judged(logits, targets, t)))
     logits, targets = _tracer_logits(network, MEASURE_SEED, batches)
-    return temperature, _figures(*_judged(logits, targets, temperature))
+    return temperature, figures(*_judged(logits, targets, temperature))
 
 
 @torch.inference_mode()
@@ -97,23 +84,14 @@ def _answer(belief: Floats) -> tuple[float, Floats | None]:
     return modes[0].probability / total, modes[0].point_crop
 
 
-def _figures(
-    confidence: Floats,
-    right: Floats,
-) -> dict[str, float]:
-    return {
-        "n": len(right),
-        "right": float(right.mean()),
-        "calibration_error": expected_calibration_error(confidence, right),
-        "error_of_surest_80": selective_error(confidence, right),
-    }
-
-
 @torch.inference_mode()
 def _write_golden(network: nn.Module, name: str, path: Path) -> None:
     """Write one input and its answer, by which a changed runtime shows."""
-    task: Task = CrossingTask() if name == "crossing" else TracerTask()
+    tasks: tuple[Task, ...] = (CrossingTask(), ThesisCrossingTask(), TracerTask())
+    task = next(task for task in tasks if task.name == name)
     inputs = next(task.batches(MEASURE_SEED, 0, 1, BATCH))[0][:2].contiguous()
+    if name == ThesisCrossingTask.name:
+        inputs = inputs.flatten(0, 1)
     answer = network(inputs)
     answer = answer if isinstance(answer, Tensor) else answer[0]
     save_file({"inputs": inputs, "answer": answer.contiguous()}, path)
@@ -127,14 +105,18 @@ def main() -> None:
     options = parser.parse_args()
     folder: Path = options.folder
     config = read_config(folder)
-    ways = {"crossing": calibrate_crossing, "tracer": calibrate_tracer}
-    temperature, figures = ways[config.network](load_network(folder), options.batches)
+    ways = {
+        CrossingTask.name: calibrate_crossing,
+        ThesisCrossingTask.name: calibrate_thesis,
+        TracerTask.name: calibrate_tracer,
+    }
+    temperature, measured = ways[config.network](load_network(folder), options.batches)
     _write_golden(load_network(folder), config.network, folder / "golden.safetensors")
     changed = config.model_copy(update={"temperature": temperature})
     (folder / "config.json").write_text(changed.model_dump_json(indent=2) + "\n")
     path = folder / "metrics.json"
     metrics = json.loads(path.read_text())
-    metrics["calibration"] = {"fit_seed": FIT_SEED, "measure_seed": MEASURE_SEED, **figures}
+    metrics["calibration"] = {"fit_seed": FIT_SEED, "measure_seed": MEASURE_SEED, **measured}
     path.write_text(json.dumps(metrics, indent=2) + "\n")
 
 

@@ -43,3 +43,13 @@ def selective_error(confidence: Floats, right: Floats, kept: float = 0.8) -> flo
     """Return the share of wrong answers among the surest `kept` of all."""
     order = np.argsort(-confidence, kind="stable")[: max(int(kept * len(confidence)), 1)]
     return float(1.0 - right[order].mean())
+
+
+def figures(confidence: Floats, right: Floats) -> dict[str, float]:
+    """Return number, share of right answers, calibration error and error of the surest 80 %."""
+    return {
+        "n": len(right),
+        "right": float(right.mean()),
+        "calibration_error": expected_calibration_error(confidence, right),
+        "error_of_surest_80": selective_error(confidence, right),
+    }

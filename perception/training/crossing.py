@@ -1,104 +1,141 @@
 """Train the crossing classifier: `python -m perception.training.crossing --out FOLDER`."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
+import cv2
 import numpy as np
 import torch
 from torch import Tensor, nn
-from torch.nn.functional import softplus
+from torch.nn.functional import binary_cross_entropy_with_logits, softplus
 
-from perception.models import crossing_crop
-from perception.models.crossing_crop import make_views
-from perception.models.crossing_net import CrossingNet
-from perception.models.frames import Crop, Floats, scale_image
+from perception.cable.classifiers.passes import StrandPass, path_through
+from perception.camera import GreyImage
+from perception.models.crossing_ribbon import REACH, make_ribbons, scale_for_ribbons
+from perception.models.crossing_ribbon_net import CrossingRibbonNet
+from perception.models.frames import Crop
 from perception.training.command import main
+from perception.training.crossing_samples import Meeting, meetings
 from perception.training.loop import Batch
 from perception.training.scenes import Scene, SceneConfig, make_scene
 
 MIXED = 512
-MOST_OF_SCENE = 24
-SCALE_ERROR = 0.12
-# Errors of traces [cable widths].
-PLACE_ERROR = 0.3
-STRAND_ERROR = 0.15
+# Small scenes have more crossings for their pixels.
+EXTENTS = (28.0, 46.0)
+SCALE_ERROR = 0.18
+# Cameras differ in these ways; shares of scenes, and how much.
+GAMMA = (0.5, 0.6, 1.7)
+SOFTER = (0.3, 0.18)
+COARSER = (0.2, 3.0)
 
 
 class CrossingTask:
-    """Say which strand lies on top; the first one of every sample does."""
+    """Say which strand lies on top; the first one of every sample that crosses does."""
 
-    name = "crossing"
+    name = "crossing_ribbons"
     widths: tuple[int, ...] = (16, 32, 64, 96)
     zoom: float = 1.0
 
     def network(self) -> nn.Module:
         """Return a fresh network."""
-        return CrossingNet(self.widths)
+        return CrossingRibbonNet(self.widths)
 
     def batches(self, seed: int, first: int, stride: int, size: int) -> Iterator[Batch]:
-        """Yield views of crossings, samples of several scenes mixed."""
-        views: list[Crop] = []
+        """Yield ribbons and whether strands cross there, places of several scenes mixed."""
+        ribbons: list[Crop] = []
+        real: list[bool] = []
         number = first
         while True:
             rng = np.random.default_rng([seed, number])
-            views.extend(crossing_views(rng, make_scene(rng, SceneConfig())))
+            scene = make_scene(rng, SceneConfig(extent=float(rng.choice(EXTENTS))))
+            found = meetings(rng, scene)
+            ribbons.extend(scene_ribbons(rng, scene, found))
+            real.extend(meeting.real for meeting in found)
             number += stride
-            while len(views) >= MIXED:
-                rng.shuffle(views)
-                yield (torch.from_numpy(np.stack(views[:size])),)
-                del views[:size]
+            while len(ribbons) >= MIXED:
+                order = rng.permutation(len(ribbons))
+                ribbons, real = [ribbons[k] for k in order], [real[k] for k in order]
+                yield (
+                    torch.from_numpy(np.stack(ribbons[:size])),
+                    torch.tensor(real[:size], dtype=torch.float32),
+                )
+                del ribbons[:size], real[:size]
 
     def loss(self, network: nn.Module, batch: Batch) -> Tensor:
-        """Return the cross-entropy."""
-        loss: Tensor = softplus(-network(batch[0]).float()).mean()
-        return loss
+        """Return the cross-entropy of both answers."""
+        ribbons, real = batch
+        logits = network(_turned(ribbons)).float()
+        on_top = (softplus(-logits[:, 0]) * real).sum() / real.sum().clamp(min=1.0)
+        return on_top + 0.5 * binary_cross_entropy_with_logits(logits[:, 1], real)
 
     @torch.inference_mode()
     def metrics(self, network: nn.Module, batches: list[Batch]) -> dict[str, float]:
-        """Return the loss and the share of right answers."""
+        """Return the loss and the share of right answers, of both kinds."""
         network.eval()
         logits = torch.cat([network(batch[0]).float() for batch in batches])
+        real = torch.cat([batch[1] for batch in batches])
+        on_top = logits[real > 0.5, 0]
         return {
-            "loss": float(softplus(-logits).mean()),
-            "right": float((logits > 0.0).float().mean()),
+            "loss": float(softplus(-on_top).mean()),
+            "right": float((on_top > 0.0).float().mean()),
+            "real_right": float(((logits[:, 1] > 0.0) == (real > 0.5)).float().mean()),
         }
 
 
-def crossing_views(rng: np.random.Generator, scene: Scene) -> list[Crop]:
-    """Return views of crossings of a scene, the upper strand first, with errors of traces."""
+def scene_ribbons(
+    rng: np.random.Generator, scene: Scene, found: Sequence[Meeting]
+) -> Sequence[Crop]:
+    """Return the ribbons of meetings of a scene, shape (2, 2, ALONG, ACROSS) each."""
+    if not found:
+        return ()
     width_px = scene.width_px * float(np.exp(rng.normal(0.0, SCALE_ERROR)))
-    scaled = scale_image(scene.image, width_px, crossing_crop.WIDTH)
-    lines = [scaled.into(cable.points_px) for cable in scene.cables]
-    chosen = rng.permutation(len(scene.crossings))[:MOST_OF_SCENE]
-    views = []
-    for index in chosen:
-        crossing = scene.crossings[index]
-        over, under = (
-            _piece(lines[cable], node) for cable, node in (crossing.over, crossing.under)
+    image, shrink = _photographed(rng, scene.image, scene.width_px)
+    scaled = scale_for_ribbons(image, shrink * width_px)
+    paths = [
+        [
+            path_through(
+                StrandPass(
+                    scaled.into((strand.line + 0.5) * shrink - 0.5),
+                    strand.at * shrink * scaled.scale,
+                ),
+                REACH,
+                1.0,
+            )
+            for strand in meeting.passes
+        ]
+        for meeting in found
+    ]
+    return list(make_ribbons(scaled, np.array(paths)))
+
+
+def _photographed(
+    rng: np.random.Generator, image: GreyImage, width_px: float
+) -> tuple[GreyImage, float]:
+    """Return an image as another camera might take it, and its size over the given one's."""
+    share, darkest, brightest = GAMMA
+    if rng.random() < share:
+        levels = 255.0 * (np.arange(256) / 255.0) ** rng.uniform(darkest, brightest)
+        image = cv2.LUT(image, levels.astype(np.uint8)).astype(np.uint8)
+    share, most = SOFTER
+    if rng.random() < share:
+        image = cv2.GaussianBlur(image, (0, 0), rng.uniform(0.05, most) * width_px).astype(np.uint8)
+    share, narrowest_px = COARSER
+    shrink = 1.0
+    if rng.random() < share:
+        shrink = rng.uniform(min(narrowest_px / width_px, 1.0), 1.0)
+        image = cv2.resize(image, None, fx=shrink, fy=shrink, interpolation=cv2.INTER_AREA).astype(
+            np.uint8
         )
-        middle = 0.5 * (_at(lines, crossing.over) + _at(lines, crossing.under))
-        if not scaled.holds(middle):
-            continue
-        middle = middle + rng.normal(0.0, PLACE_ERROR * rng.random() * crossing_crop.WIDTH, 2)
-        views.append(make_views(scaled, middle, (_disturbed(rng, over), _disturbed(rng, under))))
-    return views
+    return image, shrink
 
 
-def _at(lines: list[Floats], place: tuple[int, float]) -> Floats:
-    line, node = lines[place[0]], place[1]
-    return np.array([np.interp(node, np.arange(len(line)), axis) for axis in line.T])
-
-
-def _piece(line: Floats, node: float) -> Floats:
-    """Return the part of a line, half a width a node, that a view shows."""
-    nodes = int(2.0 * crossing_crop.REACH / crossing_crop.WIDTH)
-    first = max(int(node) - nodes, 0)
-    return line[first : int(node) + nodes + 2]
-
-
-def _disturbed(rng: np.random.Generator, piece: Floats) -> Floats:
-    error = STRAND_ERROR * rng.random() * crossing_crop.WIDTH
-    shift = rng.normal(0.0, error, 2)
-    return piece + shift + rng.normal(0.0, 0.5 * error, piece.shape)
+def _turned(ribbons: Tensor) -> Tensor:
+    """Return ribbons of which some run the other way, or are seen in a mirror."""
+    count = len(ribbons)
+    along, across, sign = (torch.rand(3, count, 2, 1, 1) < 0.5).unbind(0)
+    ribbons = torch.where(along[..., None], ribbons.flip(3), ribbons)
+    ribbons = torch.where(across[..., None], ribbons.flip(4), ribbons)
+    distance = torch.where(sign, -ribbons[:, :, 1], ribbons[:, :, 1])
+    return torch.stack([ribbons[:, :, 0], distance], dim=2)
 
 
 if __name__ == "__main__":

@@ -4,7 +4,6 @@ import pytest
 torch = pytest.importorskip("torch")
 
 from perception.models import tracer_crop  # noqa: E402  # after the skip
-from perception.training.crossing import CrossingTask, crossing_views  # noqa: E402
 from perception.training.scenes import SceneConfig, make_scene  # noqa: E402
 from perception.training.tracer import ZOOM, TracerTask, mirrored  # noqa: E402
 from perception.training.tracer_samples import (  # noqa: E402
@@ -62,17 +61,3 @@ def test_loss_falls_on_one_batch():
         optimiser.step()
         losses.append(float(loss.detach()))
     assert losses[-1] < 0.8 * losses[0]
-
-
-def test_crossing_views_show_both_strands():
-    views = []
-    for seed in range(8):
-        rng = np.random.default_rng(seed)
-        views += crossing_views(rng, make_scene(rng, SMALL))
-    first = np.stack(views)
-    assert first.shape[1:] == (2, 3, 32, 32)
-    # What is the own strand in one view is the other strand in the other one.
-    assert (first[:, :, 1:].max(axis=(3, 4)) > 0.9).mean() > 0.95
-    assert (
-        CrossingTask().metrics(CrossingTask().network(), [(torch.from_numpy(first),)])["loss"] > 0
-    )

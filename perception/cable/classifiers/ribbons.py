@@ -1,0 +1,76 @@
+"""Over and under by a network that sees both strands of a crossing at once."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import torch
+
+from perception.cable.classifiers.passes import StrandPass, passes_of, path_through
+from perception.cable.crossings import CrossingSite, decide, find_sites
+from perception.cable.types import Crossing, Points, Trace
+from perception.cable.width import width_under
+from perception.camera import GreyImage
+from perception.models.crossing_ribbon import REACH, make_ribbons, scale_for_ribbons
+from perception.models.store import load_network, read_config
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class JudgedSite:
+    """What a network says of a place where traces cross.
+
+    Attributes:
+        site: The place.
+        a_over: Belief that strand a is on top, if strands cross there.
+        real: Belief that strands cross there; else traces go over from one strand to the other.
+    """
+
+    site: CrossingSite
+    a_over: float
+    real: float
+
+
+class RibbonClassifier:
+    """Implements `CrossingClassifier` with a trained network.
+
+    P(a over b) = 1 - P(b over a) by construction, see `CrossingRibbonNet`; the temperature of
+    the trained version makes beliefs as high as answers are often right.
+
+    Args:
+        folder: A trained version, see `perception.models.store`.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self._network = load_network(folder)
+        self._temperature = read_config(folder).temperature
+
+    def classify(self, image: GreyImage, traces: Sequence[Trace]) -> tuple[Crossing, ...]:
+        """Return every crossing; see `CrossingClassifier.classify`."""
+        return tuple(decide(judged.site, judged.a_over) for judged in self.judge(image, traces))
+
+    def judge(self, image: GreyImage, traces: Sequence[Trace]) -> tuple[JudgedSite, ...]:
+        """Return both beliefs about every crossing of the traces, all in one pass."""
+        sites = find_sites(traces)
+        if not sites:
+            return ()
+        scaled = scale_for_ribbons(image, width_under(image, [trace.points_px for trace in traces]))
+        paths = np.array(
+            [[_path(strand, scaled.scale) for strand in passes_of(site, traces)] for site in sites]
+        )
+        beliefs = self._beliefs(torch.from_numpy(make_ribbons(scaled, paths)))
+        return tuple(
+            JudgedSite(site, a_over, real)
+            for site, (a_over, real) in zip(sites, beliefs, strict=True)
+        )
+
+    @torch.inference_mode()
+    def _beliefs(self, ribbons: torch.Tensor) -> list[tuple[float, float]]:
+        logits = self._network(ribbons).double()
+        logits[:, 0] /= self._temperature
+        beliefs: list[tuple[float, float]] = torch.sigmoid(logits).tolist()
+        return beliefs
+
+
+def _path(strand: StrandPass, scale: float) -> Points:
+    return (path_through(strand, REACH / scale, 1.0 / scale) + 0.5) * scale - 0.5
