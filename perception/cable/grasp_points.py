@@ -1,19 +1,19 @@
-"""Cage and pinch points of a knot (thesis, section 3.4).
+"""What a search for cage and pinch points works on, and what it answers.
 
-The pinch lies on the strand that closes the knot on top, the cage on the strand that opens
-it below. Both are looked for between undercrossings, at lonely cable: away from crossings,
-and with room on both sides for two fingers.
+Two searches do: `grasp_room` wants room for fingers, `grasp_tusk` is the thesis's. Both get the
+strand prepared here and the knot's first and last visit on it, in pixels along the strand.
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from enum import StrEnum
+from typing import Literal, Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
 from perception.cable.polyline import arc_lengths, point_at
-from perception.cable.types import Crossing, Knot, Points, Trace
-
-STEP_PX = 4.0
+from perception.cable.types import Crossing, Points, Trace
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,6 +21,8 @@ class GraspConfig:
     """Settings of the search for grasp points.
 
     Attributes:
+        policy: `room` for our search; `tusk` for the thesis's, which goes by what is cable
+            around a point, in units of the cable's width.
         room_px: Wanted distance to other strands, for two fingers of about 12 mm.
         crossing_px: Wanted distance to crossings along the strand.
         apart_px: Smallest distance between cage and pinch.
@@ -28,6 +30,7 @@ class GraspConfig:
         farther_px: How far the search goes on beyond its region when that has no room.
     """
 
+    policy: Literal["room", "tusk"] = "room"
     room_px: float = 18.0
     crossing_px: float = 20.0
     apart_px: float = 60.0
@@ -35,27 +38,95 @@ class GraspConfig:
     farther_px: float = 260.0
 
 
+class GraspFlaw(StrEnum):
+    """Why grasp points are not good ones, though the best that were found."""
+
+    PINCH_CROWDED = "no place to pinch has room around it"
+    CAGE_CROWDED = "no place to cage has room around it"
+    TOO_CLOSE = "cage and pinch are nearer to each other than two hands can be"
+
+
+@dataclass(frozen=True, slots=True)
+class CagePinch:
+    """Where to hold a knot.
+
+    Attributes:
+        cage_px: Where the caging hand takes the strand, in pixels along it.
+        pinch_px: Where the pinching hand does.
+        flaw: Why that is not a good grasp; None where it is one.
+    """
+
+    cage_px: float
+    pinch_px: float
+    flaw: GraspFlaw | None
+
+
+class GraspPolicy(Protocol):
+    """A search for cage and pinch points."""
+
+    def choose(self, strand: "HeldStrand", begin_px: float, end_px: float) -> CagePinch:
+        """Return the best points of a knot, with what is wrong with them.
+
+        Args:
+            strand: The strand that the knot is in.
+            begin_px: Where the knot begins: it runs under another strand.
+            end_px: Where it ends: it runs over that strand.
+        """
+        ...
+
+
 @dataclass(frozen=True, slots=True, eq=False)
-class _Strand:
-    """A trace prepared for grasping."""
+class CablePixels:
+    """What is cable in an image.
+
+    Attributes:
+        cable: Which pixels are, shape (height, width).
+        width_px: Width of the cable.
+    """
+
+    cable: NDArray[np.bool_]
+    width_px: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class HeldStrand:
+    """A trace prepared for grasping.
+
+    Attributes:
+        line: Its points, shape (N, 2).
+        arcs: Length up to each of them [px], shape (N,).
+        others: Points of all other traces, shape (M, 2).
+        crossings_px: Where it crosses anything, in pixels along it.
+        unders_px: Where it does so below, growing.
+    """
 
     line: Points
     arcs: Points
     others: Points
-    own_crossings_px: Points
+    crossings_px: Points
     unders_px: Points
-    config: GraspConfig
 
-    def clearance(self, at_px: float) -> float:
+    @property
+    def length_px(self) -> float:
+        """Length of the strand."""
+        return float(self.arcs[-1])
+
+    def point(self, at_px: float) -> Points:
+        """Return the point of the strand there, shape (2,)."""
+        return point_at(self.line, self.arcs, at_px)
+
+    def clearance_px(self, at_px: float, config: GraspConfig) -> float:
         """Return the distance to the nearest other strand, reduced near crossings."""
-        here = point_at(self.line, self.arcs, at_px)
-        far = np.abs(self.arcs - at_px) > self.config.own_px
+        here = self.point(at_px)
+        far = np.abs(self.arcs - at_px) > config.own_px
         near_px = float(np.linalg.norm(self.line[far] - here, axis=1).min(initial=1e3))
         if len(self.others):
             near_px = min(near_px, float(np.linalg.norm(self.others - here, axis=1).min()))
-        gap_px = float(np.abs(self.own_crossings_px - at_px).min(initial=1e3))
-        scale = self.config.room_px / self.config.crossing_px
-        return min(near_px, gap_px * scale)
+        return min(near_px, self.to_crossing_px(at_px) * config.room_px / config.crossing_px)
+
+    def to_crossing_px(self, at_px: float) -> float:
+        """Return how far along the strand the nearest crossing is."""
+        return float(np.abs(self.crossings_px - at_px).min(initial=1e3))
 
     def direction(self, at_px: float) -> Points:
         """Return the unit tangent."""
@@ -63,90 +134,22 @@ class _Strand:
         unit: Points = (ends[1] - ends[0]) / max(float(np.linalg.norm(ends[1] - ends[0])), 1e-9)
         return unit
 
-
-def choose_grasps(
-    traces: Sequence[Trace],
-    index: int,
-    crossings: Sequence[Crossing],
-    interval: tuple[float, float],
-    config: GraspConfig,
-) -> Knot:
-    """Return the knot over `interval` of one trace with its cage and pinch points."""
-    strand = _prepare(traces, index, crossings, config)
-    length_px = float(strand.arcs[-1])
-    begin_px, end_px = interval[0] * length_px, interval[1] * length_px
-    pinch_px = _pinch(strand, begin_px, end_px)
-    cage_px = _cage(strand, begin_px, end_px, point_at(strand.line, strand.arcs, pinch_px))
-    return Knot(
-        trace=index,
-        interval=interval,
-        first_undercrossing_px=point_at(strand.line, strand.arcs, begin_px),
-        cage_px=point_at(strand.line, strand.arcs, cage_px),
-        pinch_px=point_at(strand.line, strand.arcs, pinch_px),
-        cage_direction=strand.direction(cage_px),
-        pinch_direction=strand.direction(pinch_px),
-    )
+    def apart_px(self, a_px: float, b_px: float) -> float:
+        """Return the distance of two of its points."""
+        return float(np.linalg.norm(self.point(a_px) - self.point(b_px)))
 
 
-def _prepare(
-    traces: Sequence[Trace], index: int, crossings: Sequence[Crossing], config: GraspConfig
-) -> _Strand:
+def held_strand(traces: Sequence[Trace], index: int, crossings: Sequence[Crossing]) -> HeldStrand:
+    """Prepare one of the traces of an image."""
     line = traces[index].points_px
     arcs = arc_lengths(line)
     overs = [c.arc_over for c in crossings if c.trace_over == index]
     unders = [c.arc_under for c in crossings if c.trace_under == index]
     others = [trace.points_px for k, trace in enumerate(traces) if k != index]
-    return _Strand(
+    return HeldStrand(
         line,
         arcs,
         np.concatenate(others) if others else np.empty((0, 2)),
         np.array(overs + unders) * arcs[-1],
         np.sort(np.array(unders)) * arcs[-1],
-        config,
     )
-
-
-def _pinch(strand: _Strand, begin_px: float, end_px: float) -> float:
-    """Search between the last undercrossing of the knot and the next one after it."""
-    inside = strand.unders_px[(strand.unders_px > begin_px + 1.0) & (strand.unders_px < end_px)]
-    after = strand.unders_px[strand.unders_px > end_px]
-    low = float(inside.max(initial=begin_px))
-    high = float(after.min(initial=strand.arcs[-1]))
-    region = np.arange(low, high, STEP_PX)
-    beyond = np.arange(high, high + strand.config.farther_px, STEP_PX)
-    return _most_graspable(strand, region, beyond, end_px, None)
-
-
-def _cage(strand: _Strand, begin_px: float, end_px: float, pinch: Points) -> float:
-    """Search from the first undercrossing to the next one inside the knot."""
-    inside = strand.unders_px[(strand.unders_px > begin_px + 1.0) & (strand.unders_px < end_px)]
-    high = float(inside.min(initial=end_px))
-    region = np.arange(begin_px, high, STEP_PX)
-    beyond = np.arange(high, high + strand.config.farther_px, STEP_PX)
-    return _most_graspable(strand, region, beyond, begin_px, pinch)
-
-
-def _most_graspable(
-    strand: _Strand, region: Points, beyond: Points, near_px: float, apart_from: Points | None
-) -> float:
-    """Return the roomiest place of a region, or the first good one beyond, or the best of all."""
-    best: tuple[float, float] | None = None
-    for places in (region, beyond):
-        rated = [
-            (min(strand.clearance(at), strand.config.room_px) - 0.01 * abs(at - near_px), float(at))
-            for at in places
-            if 0.0 <= at <= strand.arcs[-1] and _is_apart(strand, at, apart_from)
-        ]
-        top = max(rated, default=None)
-        if top is not None and (best is None or top[0] > best[0]):
-            best = top
-        if best is not None and strand.clearance(best[1]) >= strand.config.room_px:
-            return best[1]
-    return best[1] if best is not None else near_px
-
-
-def _is_apart(strand: _Strand, at_px: float, other: Points | None) -> bool:
-    if other is None:
-        return True
-    gap_px = float(np.linalg.norm(point_at(strand.line, strand.arcs, at_px) - other))
-    return gap_px >= strand.config.apart_px

@@ -11,7 +11,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from perception.cable.crossings import strand_of
-from perception.cable.grasp_points import GraspConfig, choose_grasps
+from perception.cable.grasp_points import (
+    CablePixels,
+    CagePinch,
+    GraspConfig,
+    GraspPolicy,
+    HeldStrand,
+    held_strand,
+)
+from perception.cable.grasp_room import RoomPolicy
+from perception.cable.grasp_tusk import TuskPolicy
 from perception.cable.polyline import arc_lengths, point_at
 from perception.cable.topology import (
     Knottedness,
@@ -28,14 +37,60 @@ MARGIN_PX = 4.0
 
 
 def find_knots(
-    traces: Sequence[Trace], crossings: Sequence[Crossing], config: GraspConfig | None = None
+    traces: Sequence[Trace],
+    crossings: Sequence[Crossing],
+    config: GraspConfig | None = None,
+    pixels: CablePixels | None = None,
 ) -> tuple[Knot, ...]:
-    """Return the knots of all traces in the order of the traces."""
-    config = config or GraspConfig()
+    """Return the knots of all traces in the order of the traces, and where to hold each.
+
+    Args:
+        traces: The traces.
+        crossings: Their crossings.
+        config: How cage and pinch are searched for.
+        pixels: What is cable in the image; only the thesis's search needs it.
+    """
+    policy = grasp_policy(config or GraspConfig(), pixels)
     return tuple(
-        choose_grasps(traces, index, crossings, interval, config)
-        for index, trace in enumerate(traces)
-        for interval in knot_intervals(trace, index, crossings)
+        _held(strand, index, interval, choose_grasps(policy, strand, interval))
+        for index in range(len(traces))
+        for strand in (held_strand(traces, index, crossings),)
+        for interval in knot_intervals(traces[index], index, crossings)
+    )
+
+
+def grasp_policy(config: GraspConfig, pixels: CablePixels | None = None) -> GraspPolicy:
+    """Return the search for cage and pinch that the settings name.
+
+    Raises:
+        ValueError: It counts pixels of cable, and there are none.
+    """
+    if config.policy == "room":
+        return RoomPolicy(config)
+    if pixels is None:
+        raise ValueError(
+            "grasp_policy: policy 'tusk' counts pixels of cable; got none; expected the mask of "
+            "the image; try: policy 'room', which goes by traces alone"
+        )
+    return TuskPolicy(pixels)
+
+
+def choose_grasps(
+    policy: GraspPolicy, strand: HeldStrand, interval: tuple[float, float]
+) -> CagePinch:
+    """Return cage and pinch of the knot over an interval of arc positions, and their flaw."""
+    return policy.choose(strand, interval[0] * strand.length_px, interval[1] * strand.length_px)
+
+
+def _held(strand: HeldStrand, index: int, interval: tuple[float, float], grasps: CagePinch) -> Knot:
+    return Knot(
+        trace=index,
+        interval=interval,
+        first_undercrossing_px=strand.point(interval[0] * strand.length_px),
+        cage_px=strand.point(grasps.cage_px),
+        pinch_px=strand.point(grasps.pinch_px),
+        cage_direction=strand.direction(grasps.cage_px),
+        pinch_direction=strand.direction(grasps.pinch_px),
     )
 
 
