@@ -18,7 +18,7 @@ from perception.training.crossing_samples import Meeting, meetings
 from perception.training.loop import Batch
 from perception.training.scenes import Scene, SceneConfig, make_scene
 
-MIXED = 512
+MIXED = 2048
 # Small scenes have more crossings for their pixels.
 EXTENTS = (28.0, 46.0)
 SCALE_ERROR = 0.18
@@ -29,11 +29,18 @@ COARSER = (0.2, 3.0)
 
 
 class CrossingTask:
-    """Say which strand lies on top; the first one of every sample that crosses does."""
+    """Say which strand lies on top; the first one of every sample that crosses does.
+
+    Args:
+        times: How often a sample is shown; drawing one costs more than learning from it.
+    """
 
     name = "crossing_ribbons"
     widths: tuple[int, ...] = (16, 32, 64, 96)
     zoom: float = 1.0
+
+    def __init__(self, times: int = 1) -> None:
+        self._times = times
 
     def network(self) -> nn.Module:
         """Return a fresh network."""
@@ -48,8 +55,10 @@ class CrossingTask:
             rng = np.random.default_rng([seed, number])
             scene = make_scene(rng, SceneConfig(extent=float(rng.choice(EXTENTS))))
             found = meetings(rng, scene)
-            ribbons.extend(scene_ribbons(rng, scene, found))
-            real.extend(meeting.real for meeting in found)
+            drawn = scene_ribbons(rng, scene, found)
+            for _ in range(self._times):
+                ribbons.extend(drawn)
+                real.extend(meeting.real for meeting in found)
             number += stride
             while len(ribbons) >= MIXED:
                 order = rng.permutation(len(ribbons))
@@ -139,4 +148,4 @@ def _turned(ribbons: Tensor) -> Tensor:
 
 
 if __name__ == "__main__":
-    main(CrossingTask())
+    main(CrossingTask(times=3))
