@@ -49,7 +49,12 @@ def find_knots(
         crossings: Their crossings.
         config: How cage and pinch are searched for.
         pixels: What is cable in the image; only the thesis's search needs it.
+
+    Raises:
+        ValueError: The search needs them, and there are none.
     """
+    if not traces:
+        return ()
     policy = grasp_policy(config or GraspConfig(), pixels)
     return tuple(
         _held(strand, index, interval, choose_grasps(policy, strand, interval))

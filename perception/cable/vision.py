@@ -16,7 +16,7 @@ from perception.cable.coverage import explained_share
 from perception.cable.covered_ends import ends_are_clear
 from perception.cable.crowding import doubt_shared
 from perception.cable.eyes import Eye, ThresholdEye
-from perception.cable.grasp_points import GraspConfig
+from perception.cable.grasp_points import CablePixels, GraspConfig
 from perception.cable.interfaces import CrossingClassifier, Tracer
 from perception.cable.knots import find_knots
 from perception.cable.tracers.analytic import AnalyticTracer
@@ -157,8 +157,9 @@ class ClassicCableVision:
         self, image: GreyImage, traces: Sequence[Trace], crossings: Sequence[Crossing]
     ) -> tuple[Knot, ...]:
         """Find knots and where to hold them."""
-        del image  # Grasp points follow from the traces alone.
-        return find_knots(traces, crossings, self._config.grasps)
+        seen = self._eye.observe(self._seen(image))
+        pixels = CablePixels(seen.mask.cable, seen.mask.width_px) if seen is not None else None
+        return find_knots(traces, crossings, self._config.grasps, pixels)
 
     def knotted_probability(self, traces: Sequence[Trace], crossings: Sequence[Crossing]) -> float:
         """Carry the beliefs of traces and crossings to P(knotted)."""
