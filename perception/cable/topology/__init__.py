@@ -2,6 +2,7 @@
 
 from perception.cable.topology.curve import Strand, StrandCrossing, close_over, curve_crossings
 from perception.cable.topology.diagram import Diagram
+from perception.cable.topology.knot_type import knot_type
 from perception.cable.topology.verdict import (
     Knottedness,
     Proof,
@@ -21,4 +22,5 @@ __all__ = [
     "classify_diagram",
     "close_over",
     "curve_crossings",
+    "knot_type",
 ]
