@@ -1,0 +1,186 @@
+"""Lift a strand that runs over everything, or draw out one that runs under: where it may lie.
+
+As `topology.passes` does with closed diagrams, but on an open curve, where a strand that is
+lifted over an end would set that end free. Knots are about the curve with its ends joined over
+everything, so a run on top lies below the joint, and is held back by where the joint comes
+down. Join the ends beside the run: a way that does not cross this joint can be slid to from
+the old one (on the sphere without joint, start and end of the run, a pair of pants, there is
+but one simple way between the latter two). A run below passes under the joint, too, but can
+only be drawn out sideways from under the others: its new way crosses nothing.
+"""
+
+from collections import deque
+from dataclasses import dataclass
+
+import numpy as np
+
+from perception.cable.planning.open_diagram import Joined, OpenDiagram, coded
+
+
+@dataclass(frozen=True, slots=True)
+class Stretch:
+    """Neighbouring visits that are all over or all under.
+
+    Attributes:
+        first: Place of the first visit.
+        last: Place of the last one.
+    """
+
+    first: int
+    last: int
+
+    @property
+    def length(self) -> int:
+        """Number of visits."""
+        return self.last - self.first + 1
+
+    @property
+    def edges(self) -> range:
+        """The edges before, between and after its visits."""
+        return range(self.first, self.last + 2)
+
+
+@dataclass(frozen=True, slots=True)
+class Door:
+    """How one gets from one face to the next.
+
+    Attributes:
+        face: The face behind it.
+        edge: Edge of the open curve that is crossed.
+        part: Which part of that edge, where the joint runs over it.
+        from_left: Whether the edge is crossed from its left.
+    """
+
+    face: int
+    edge: int
+    part: int
+    from_left: bool
+
+
+def stretches(diagram: OpenDiagram) -> list[Stretch]:
+    """Return the longest runs of a diagram, in the order of the curve."""
+    over, count = diagram.over, len(diagram.over)
+    starts = [p for p in range(count) if not p or over[p] != over[p - 1]]
+    return [Stretch(a, b - 1) for a, b in zip(starts, [*starts[1:], count], strict=False)]
+
+
+class Faces:
+    """The faces of an open curve, from which runs can be lifted one at a time."""
+
+    def __init__(self, diagram: OpenDiagram) -> None:
+        """Find the faces once; the diagram must have crossings."""
+        self._diagram = diagram
+        self._left, self._right, self._count = diagram.faces()
+        self._shortest_joint = _Walls(diagram, diagram.joined())
+
+    def way(self, run: Stretch) -> list[Door] | None:
+        """Return what a run inside the curve crosses when it is laid along its shortest way.
+
+        Returns:
+            The doors in order; None where a run below has to cross others, or one on top shuts
+            an end in.
+        """
+        if self._diagram.over[run.first]:
+            return self._way_over(run)
+        root = _merged(self._left, self._right, self._count, run.edges)
+        source, target = self._left[run.first], self._left[run.last + 1]
+        return [] if root[source] == root[target] else None
+
+    def _way_over(self, run: Stretch) -> list[Door] | None:
+        if not self._shortest_joint.cuts(run):
+            return self._shortest_joint.way(run)
+        joined = self._diagram.joined_beside(run.edges)
+        return None if joined is None else _Walls(self._diagram, joined).way(run)
+
+
+class _Walls:
+    """The faces between the curve and a joint that nothing may cross."""
+
+    def __init__(self, diagram: OpenDiagram, joined: Joined) -> None:
+        self._places = joined.places
+        self._left, self._right, self._count = joined.diagram.faces()
+        own = len(joined.diagram.visits) - (len(joined.diagram) - len(diagram))
+        self._parts = self._parts_of_edges(own)
+
+    def _parts_of_edges(self, own: int) -> list[tuple[int, int, int]]:
+        """Return the parts of the curve's edges as (closed edge, edge, part)."""
+        parts, real, edge, part = [], set(self._places), 0, 0
+        for place in range(own):
+            parts.append(((place - 1) % len(self._left), edge, part))
+            edge, part = (edge + 1, 0) if place in real else (edge, part + 1)
+        return [*parts, (own - 1, edge, part)]
+
+    def _lifted(self, run: Stretch) -> range:
+        """Return the closed edges from the visit before a run to the one after it."""
+        return range(self._places[run.first - 1], self._places[run.last + 1])
+
+    def cuts(self, run: Stretch) -> bool:
+        """Say whether the joint crosses a run."""
+        return len(self._lifted(run)) != len(run.edges)
+
+    def way(self, run: Stretch) -> list[Door]:
+        """Return what a run on top crosses along its shortest way beside the joint."""
+        lifted = self._lifted(run)
+        root = _merged(self._left, self._right, self._count, lifted)
+        source, target = root[self._left[lifted[0]]], root[self._left[lifted[-1]]]
+        doors: dict[int, list[Door]] = {face: [] for face in root}
+        for closed_edge, edge, part in self._parts:
+            left, right = root[self._left[closed_edge]], root[self._right[closed_edge]]
+            if left != right and closed_edge not in lifted:
+                doors[left].append(Door(right, edge, part, from_left=True))
+                doors[right].append(Door(left, edge, part, from_left=False))
+        return _shortest(doors, source, target)
+
+
+def _merged(left: list[int], right: list[int], count: int, lifted: range) -> list[int]:
+    """Return for each face which one it is part of when edges are lifted."""
+    root = list(range(count))
+    for edge in lifted:
+        gone, kept = root[left[edge]], root[right[edge]]
+        root = [kept if face == gone else face for face in root]
+    return root
+
+
+def _shortest(doors: dict[int, list[Door]], source: int, target: int) -> list[Door]:
+    """Search breadth first; the curve hangs together, so there is a way."""
+    came: dict[int, tuple[int, Door]] = {}
+    queue, seen = deque([source]), {source}
+    while target not in seen:
+        face = queue.popleft()
+        for door in doors[face]:
+            if door.face not in seen:
+                seen.add(door.face)
+                came[door.face] = (face, door)
+                queue.append(door.face)
+    way: list[Door] = []
+    while target != source:
+        target, door = came[target]
+        way.append(door)
+    return way[::-1]
+
+
+def laid(diagram: OpenDiagram, run: Stretch, way: list[Door]) -> OpenDiagram:
+    """Return the diagram with the crossings of a run replaced by those along a way."""
+    on_top = diagram.over[run.first]
+    lifted = set(diagram.visits[run.first : run.last + 1])
+    signs = dict(enumerate(diagram.signs))
+    begin, end = diagram.span(run.first)[0], diagram.span(run.last + 1)[1]
+    met = [
+        (arc, visit, over)
+        for arc, visit, over in zip(diagram.arcs, diagram.visits, diagram.over, strict=True)
+        if visit not in lifted
+    ]
+    spread = np.linspace(begin, end, len(way) + 2)[1:-1]
+    for number, (door, arc) in enumerate(zip(way, spread, strict=True), start=len(diagram)):
+        signs[number] = 1 if door.from_left == on_top else -1
+        met.append((float(arc), number, on_top))
+        met.append((_arc_on(diagram, door, way), number, not on_top))
+    met.sort()
+    return coded([m[1] for m in met], [m[2] for m in met], signs, [m[0] for m in met])
+
+
+def _arc_on(diagram: OpenDiagram, door: Door, way: list[Door]) -> float:
+    """Return where on the cable a way crosses an edge, in order where it does so twice."""
+    parts = sorted(other.part for other in way if other.edge == door.edge)
+    begin, end = diagram.span(door.edge)
+    return begin + (end - begin) * (parts.index(door.part) + 1) / (len(parts) + 1)
