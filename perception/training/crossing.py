@@ -39,7 +39,7 @@ class CrossingTask:
     widths: tuple[int, ...] = (16, 32, 64, 96)
     zoom: float = 1.0
 
-    def __init__(self, times: int = 1) -> None:
+    def __init__(self, times: int = 3) -> None:
         self._times = times
 
     def network(self) -> nn.Module:
@@ -148,4 +148,4 @@ def _turned(ribbons: Tensor) -> Tensor:
 
 
 if __name__ == "__main__":
-    main(CrossingTask(times=3))
+    main(CrossingTask())

@@ -29,7 +29,7 @@ def calibrate_crossing(network: nn.Module, batches: int) -> tuple[float, dict[st
 
 def _crossing_logits(network: nn.Module, seed: int, batches: int) -> tuple[Tensor, Tensor, Tensor]:
     """Return logits of the upper strand at crossings, and of "they cross" with its truth."""
-    stream = CrossingTask().batches(seed, 0, 1, BATCH)
+    stream = CrossingTask(times=1).batches(seed, 0, 1, BATCH)
     drawn = [next(stream) for _ in range(batches)]
     logits = torch.cat([network(batch[0]).float() for batch in drawn])
     real = torch.cat([batch[1] for batch in drawn]) > 0.5

@@ -109,7 +109,24 @@ def _erring(
 def _erring_piece(
     rng: np.random.Generator, piece: _Piece, width_px: float, config: MeetingConfig
 ) -> _Piece:
-    points = piece.points
+    line = erring_line(rng, piece.points, width_px, config)
+    if len(line) > 12 and rng.random() < config.coarse:
+        first = int(rng.integers(4))
+        return _Piece(line[first::4], (piece.node - first) / 4.0)
+    return _Piece(line, piece.node)
+
+
+def erring_line(
+    rng: np.random.Generator, points: Floats, width_px: float, config: MeetingConfig
+) -> Floats:
+    """Return a line that lies aside of the true one here and there, as traces do.
+
+    Args:
+        rng: Source of all randomness.
+        points: The true line, with nodes half a cable width apart, shape (N, 2).
+        width_px: Width of the cable.
+        config: How far lines err.
+    """
     drift = rng.uniform(*config.drift) / SPACING_WIDTHS
     aside = gaussian_filter1d(rng.normal(size=len(points)), drift, mode="nearest")
     # Smoothing takes this share of white noise's deviation away.
@@ -117,11 +134,8 @@ def _erring_piece(
     along = tangents(points, 2)
     across = np.column_stack([-along[:, 1], along[:, 0]])
     jitter = rng.normal(0.0, config.jitter * rng.random() * width_px, points.shape)
-    line = points + aside[:, None] * across + jitter
-    if len(line) > 12 and rng.random() < config.coarse:
-        first = int(rng.integers(4))
-        return _Piece(line[first::4], (piece.node - first) / 4.0)
-    return _Piece(line, piece.node)
+    line: Floats = points + aside[:, None] * across + jitter
+    return line
 
 
 def _crossing_of(pieces: Sequence[_Piece]) -> tuple[StrandPass, StrandPass] | None:
