@@ -1,21 +1,18 @@
-"""From uncertain traces and crossings to P(knotted).
+"""From uncertain traces and crossings to P(knotted) and P(knot).
 
-Every crossing may be the other way round. The likeliest combinations of all crossings are
-listed, each gives a diagram that is classified exactly, and their probabilities add up.
+A cable may be read in several ways, each of which has crossings that may be either way round.
+Every likely combination gives a diagram whose knot is told exactly, and probabilities add up.
+What is not read, or read only in part, is unknown.
 """
 
-import heapq
 import math
-from collections.abc import Iterator, Sequence
-from functools import lru_cache
+from collections import defaultdict
+from collections.abc import Iterable, Mapping, Sequence
 
-from perception.cable.crossings import strand_of
-from perception.cable.topology import Diagram, Knottedness, classify_diagram, close_over
-from perception.cable.types import Crossing, Trace, TraceEnd
+from perception.cable.outcomes import MOST_COMBINATIONS, Outcomes, outcomes
+from perception.cable.topology.knot_type import UNKNOT, UNKNOWN
+from perception.cable.types import Crossing, KnotBelief, Reading, Trace, TraceEnd
 
-# Combinations are listed until so much of the probability is covered, or so many are seen.
-COVERED = 0.999
-MOST_COMBINATIONS = 96
 # How much a trace that ends like this can tell about the whole cable.
 COMPLETENESS = {
     TraceEnd.ENDPOINT: 1.0,
@@ -24,6 +21,8 @@ COMPLETENESS = {
     TraceEnd.RETRACE: 0.2,
 }
 NOTHING_KNOWN = 0.5
+Chances = Mapping[str, float]
+FEWEST_COMBINATIONS = 8
 
 
 def knotted_probability(traces: Sequence[Trace], crossings: Sequence[Crossing]) -> float:
@@ -32,58 +31,81 @@ def knotted_probability(traces: Sequence[Trace], crossings: Sequence[Crossing]) 
     A trace that is unsure or incomplete pulls the belief towards one half; without any trace
     nothing is known.
     """
-    if not traces:
+    return any_knotted([[reading_of(trace, k, crossings)] for k, trace in enumerate(traces)])
+
+
+def any_knotted(cables: Sequence[Sequence[Reading]]) -> float:
+    """Return the belief that at least one cable is knotted.
+
+    Args:
+        cables: For each cable the ways to read it; what their probabilities lack to 1 is the
+            belief in none of them.
+    """
+    if not cables:
         return NOTHING_KNOWN
-    none_knotted = 1.0
-    for index, trace in enumerate(traces):
-        seen = diagram_probability(trace, index, crossings)
-        sure = trace.probability * COMPLETENESS[trace.end]
-        none_knotted *= 1.0 - (sure * seen + (1.0 - sure) * NOTHING_KNOWN)
-    return 1.0 - none_knotted
+    return 1.0 - math.prod(1.0 - knotted_share(chances(readings)) for readings in cables)
+
+
+def knot_types(readings: Sequence[Reading]) -> tuple[KnotBelief, ...]:
+    """Return the beliefs in the knots that one cable may hold, the likeliest first."""
+    ordered = sorted(chances(readings).items(), key=lambda item: (-item[1], item[0]))
+    return tuple(KnotBelief(name, probability) for name, probability in ordered if probability > 0)
+
+
+def reading_of(trace: Trace, index: int, crossings: Sequence[Crossing]) -> Reading:
+    """Return the reading of one trace out of several.
+
+    Args:
+        trace: The trace.
+        index: Its number in the crossings.
+        crossings: Crossings of all traces.
+    """
+    own = tuple(c for c in crossings if c.trace_over == index and c.trace_under == index)
+    return Reading(trace, own)
 
 
 def diagram_probability(trace: Trace, index: int, crossings: Sequence[Crossing]) -> float:
     """Return the belief that a trace is knotted, given that it follows the cable."""
-    own = [c for c in crossings if c.trace_over == index and c.trace_under == index]
-    own.sort(key=lambda crossing: min(crossing.arc_over, crossing.arc_under))
-    diagram = close_over(strand_of(trace, index, own))
-    knotted = seen = 0.0
-    for flipped, weight in likeliest_flips([crossing.probability for crossing in own]):
-        knotted += weight * _knotted(diagram.swapped(frozenset(flipped)))
-        seen += weight
-    return knotted / seen
+    return knotted_share(told(outcomes(reading_of(trace, index, crossings))))
 
 
-@lru_cache(maxsize=4096)
-def _knotted(diagram: Diagram) -> float:
-    answers = {Knottedness.UNKNOT: 0.0, Knottedness.KNOTTED: 1.0, Knottedness.UNDECIDED: 0.5}
-    return answers[classify_diagram(diagram).state]
+def chances(readings: Sequence[Reading]) -> Chances:
+    """Return the probability of each knot of one cable, `unknown` among them."""
+    told_by = [told(listed) for listed in listings(readings)]
+    sure = [sureness(reading) for reading in readings]
+    rest = max(0.0, 1.0 - math.fsum(sure))
+    return mixed([*zip(sure, told_by, strict=True), (rest, {UNKNOWN: 1.0})])
 
 
-def likeliest_flips(probabilities: Sequence[float]) -> Iterator[tuple[tuple[int, ...], float]]:
-    """Yield sets of crossings that are the other way round, the likeliest first.
+def mixed(parts: Iterable[tuple[float, Chances]]) -> Chances:
+    """Return the sum of probabilities, each times its weight."""
+    total: defaultdict[str, float] = defaultdict(float)
+    for weight, part in parts:
+        for name, probability in part.items():
+            total[name] += weight * probability
+    return total
 
-    Args:
-        probabilities: Belief in each crossing as it is, in [0.5, 1].
 
-    Yields:
-        Indices of the crossings to flip, and the probability of exactly that combination.
-    """
-    costs = [math.log(p / max(1.0 - p, 1e-12)) for p in probabilities]
-    order = sorted(range(len(costs)), key=lambda k: costs[k])
-    base = math.prod(probabilities)
-    covered, count = 0.0, 0
-    # Subsets by growing total cost: extend a subset, or move its last member on by one.
-    heap: list[tuple[float, tuple[int, ...]]] = [(0.0, ())]
-    while heap and covered < COVERED and count < MOST_COMBINATIONS:
-        cost, chosen = heapq.heappop(heap)
-        weight = base * math.exp(-cost)
-        yield tuple(order[k] for k in chosen), weight
-        covered, count = covered + weight, count + 1
-        following = chosen[-1] + 1 if chosen else 0
-        if following < len(order):
-            step = costs[order[following]]
-            heapq.heappush(heap, (cost + step, (*chosen, following)))
-            if chosen:
-                moved = cost - costs[order[chosen[-1]]] + step
-                heapq.heappush(heap, (moved, (*chosen[:-1], following)))
+def listings(readings: Sequence[Reading]) -> list[Outcomes]:
+    """List each reading's combinations, of likelier readings more."""
+    return [
+        outcomes(reading, max(FEWEST_COMBINATIONS, round(MOST_COMBINATIONS * sureness(reading))))
+        for reading in readings
+    ]
+
+
+def sureness(reading: Reading) -> float:
+    """Return how much of the belief in the whole cable's knot is a reading's."""
+    return reading.trace.probability * COMPLETENESS[reading.trace.end]
+
+
+def told(listed: Outcomes) -> Chances:
+    """Return the probability of each knot, given that a reading is right."""
+    rows = zip(listed.weights.tolist(), listed.knots, strict=True)
+    return mixed((weight, {name: 1.0}) for weight, name in rows)
+
+
+def knotted_share(knots: Chances) -> float:
+    """Return P(knotted) from the probabilities of all knots; the unknown counts half."""
+    unknown, unknotted = knots.get(UNKNOWN, 0.0), knots.get(UNKNOT, 0.0)
+    return max(0.0, 1.0 - unknotted - unknown * (1.0 - NOTHING_KNOWN))

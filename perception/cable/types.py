@@ -110,6 +110,55 @@ class Knot:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class Reading:
+    """One way to read one cable.
+
+    Attributes:
+        trace: The path; its probability is the belief that this reading is right.
+        crossings: Its crossings with itself.
+    """
+
+    trace: Trace
+    crossings: tuple[Crossing, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class KnotBelief:
+    """How likely a cable holds a knot.
+
+    Attributes:
+        name: The knot as `perception.cable.topology.knot_type` names it, with its ends joined
+            over everything; `0_1` for no knot, `unknown` where the cable was not read.
+        probability: Belief in it.
+    """
+
+    name: str
+    probability: float
+
+
+class QuestionKind(StrEnum):
+    """What may be asked about an image."""
+
+    CROSSING = "crossing"  # Which strand is on top?
+    PATH = "path"  # Which way does the cable go on?
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Question:
+    """Something unsure, and how much its answer would tell.
+
+    Attributes:
+        kind: Whether over and under or the way of the cable is asked for.
+        position_px: Where to look, shape (2,).
+        bits: By how much the answer lowers the entropy of the belief, on average.
+    """
+
+    kind: QuestionKind
+    position_px: Points
+    bits: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class CableScene:
     """Everything that is believed about one image.
 
@@ -120,6 +169,8 @@ class CableScene:
         knots: Knots in the order of the first trace.
         knotted_probability: Belief that at least one cable is knotted.
         seconds: Time it took [s].
+        knot_types: Beliefs in the knot of the first trace, the likeliest first.
+        telling: What to look at to learn most about whether a cable is knotted.
     """
 
     traces: tuple[Trace, ...]
@@ -128,6 +179,8 @@ class CableScene:
     knots: tuple[Knot, ...]
     knotted_probability: float
     seconds: float
+    knot_types: tuple[KnotBelief, ...] = ()
+    telling: Question | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 from synthetic_cable import Drawing, figure_8, laid_down, overhand
 
-from perception.cable.belief import diagram_probability, knotted_probability, likeliest_flips
+from perception.cable.belief import diagram_probability, knotted_probability
 from perception.cable.crossings import decide, find_sites
 from perception.cable.knots import find_knots, knot_intervals
+from perception.cable.outcomes import likeliest_flips
 from perception.cable.topology import curve_crossings
 from perception.cable.types import Crossing, Trace, TraceEnd
 
