@@ -1,50 +1,32 @@
-"""The command line of every training."""
+"""The command line of one training by itself: `python -m perception.training.TASK`."""
 
 import argparse
-import json
-from collections.abc import Mapping
-from dataclasses import asdict
 from pathlib import Path
 
-from safetensors.torch import save_file
-from torch import Tensor
+from pydantic import ValidationError
 
-from perception.training.loop import Recipe, Task, Trainer
-
-
-def compact(weights: Mapping[str, Tensor]) -> dict[str, Tensor]:
-    """Return weights to store: kernels at half precision, all else as it is."""
-    return {
-        name: (tensor.half() if tensor.dim() > 1 else tensor).detach().contiguous()
-        for name, tensor in weights.items()
-    }
+from executive.core.errors import InputError
+from perception.training.loop import Task
+from perception.training.progress import PlainReporter
+from perception.training.recipes import Recipe, VersionRecipe
+from perception.training.tasks import task_name
+from perception.training.versions import train_version
 
 
 def main(task: Task) -> None:
-    """Train, and write weights, config, recipe and figures."""
+    """Train one stage, going on if it was stopped, and write the version."""
     parser = argparse.ArgumentParser(prog=f"python -m perception.training.{task.name}")
     parser.add_argument("--out", type=Path, required=True, help="folder of the trained version")
-    defaults = asdict(Recipe())
-    for name, value in defaults.items():
+    for name, field in Recipe.model_fields.items():
         flag = f"--{name.replace('_', '-')}"
-        parser.add_argument(flag, type=type(value), default=value, help=f"default {value}")
+        parser.add_argument(flag, default=field.default, help=f"default {field.default}")
     options = vars(parser.parse_args())
     folder = options.pop("out")
-    folder.mkdir(parents=True, exist_ok=True)
-    recipe = Recipe(**options)
-    trainer = Trainer(task, recipe, folder)
-    figures = trainer.run()
-    weights = trainer.average.module.state_dict()
-    save_file(compact(weights), folder / "weights.safetensors")
-    _write(folder / "config.json", {"network": task.name, "widths": task.widths, "zoom": task.zoom})
-    _write(
-        folder / "metrics.json",
-        {"held_out": figures, "samples": trainer.seen, "hours": trainer.hours},
-    )
-    settings = "".join(f"{name}: {value}\n" for name, value in asdict(recipe).items())
-    command = f"command: python -m perception.training.{task.name}\n"
-    (folder / "recipe.yaml").write_text(command + settings)
-
-
-def _write(path: Path, content: dict[str, object]) -> None:
-    path.write_text(json.dumps(content, indent=2) + "\n")
+    try:
+        stage = Recipe.model_validate(options)
+    except ValidationError as error:
+        parser.error(str(error))
+    try:
+        train_version(VersionRecipe(task=task_name(task), stages=(stage,)), folder, PlainReporter())
+    except InputError as error:
+        parser.exit(2, f"{error}\n")

@@ -1,8 +1,16 @@
-"""Train any network: batches from workers, schedule, running average, checkpoints, resume."""
+"""Train any network: batches from workers, schedule, running average, checkpoints, resume.
 
+A training that was stopped goes on as if it had not been: its checkpoint holds all that it
+needs, and samples come in rounds that can be begun anew.
+"""
+
+import signal
+import threading
 import time
 from collections.abc import Callable, Iterator
-from dataclasses import asdict, dataclass
+from contextlib import contextmanager
+from itertools import islice
+from math import cos, inf, nan, pi
 from pathlib import Path
 from typing import Protocol
 
@@ -12,7 +20,16 @@ from torch import Tensor, nn
 from torch.optim.swa_utils import AveragedModel
 from torch.utils.data import DataLoader, IterableDataset, get_worker_info
 
+from executive.core.errors import InputError
+from perception.training.progress import PlainReporter, Progress, Reporter
+from perception.training.recipes import Recipe
+
 Batch = tuple[Tensor, ...]
+
+# Batches of a round, and scenes kept for it, which are more than any round needs.
+ROUND = 400
+SCENES_A_ROUND = 1_000_000
+WARM_UP = 200.0
 
 
 class Task(Protocol):
@@ -45,39 +62,8 @@ class Task(Protocol):
         ...
 
 
-@dataclass(frozen=True, slots=True)
-class Recipe:
-    """How to train.
-
-    Attributes:
-        seed: Of the initial weights and of every scene.
-        samples: Samples to see in all.
-        hours: Stop after this much work, even with fewer samples.
-        batch: Samples a step.
-        rate: Highest learning rate (AdamW, cosine after a short warm-up).
-        decay: Weight decay.
-        average: Decay of the running average of the weights.
-        threads: Threads of the network's own work.
-        workers: Processes that draw samples.
-        held_out_seed: Of the scenes that are only measured on.
-        held_out_batches: How many batches of them.
-        report_s: Time between reports and checkpoints [s].
-        start: Weights to start from, empty for random ones.
-    """
-
-    seed: int = 1
-    samples: int = 3_000_000
-    hours: float = 2.0
-    batch: int = 128
-    rate: float = 2e-3
-    decay: float = 1e-4
-    average: float = 0.998
-    threads: int = 1
-    workers: int = 1
-    held_out_seed: int = 900_001
-    held_out_batches: int = 24
-    report_s: float = 240.0
-    start: str = ""
+class TrainingStoppedError(InputError):
+    """Somebody stopped a training; what it has learned is kept."""
 
 
 class _Stream(IterableDataset[Batch]):
@@ -85,8 +71,11 @@ class _Stream(IterableDataset[Batch]):
         self.task, self.seed, self.first, self.size = task, seed, first, size
 
     def __iter__(self) -> Iterator[Batch]:
-        torch.set_num_threads(1)
         info = get_worker_info()
+        if info is not None:
+            torch.set_num_threads(1)
+            # The training's own process says when to stop.
+            signal.signal(signal.SIGINT, signal.SIG_IGN)
         index, stride = (info.id, info.num_workers) if info else (0, 1)
         return self.task.batches(self.seed, self.first + index, stride, self.size)
 
@@ -101,6 +90,22 @@ def _growing_average(decay: float) -> Callable[[Tensor, Tensor, Tensor], Tensor]
     return update
 
 
+@contextmanager
+def _stop_asked() -> Iterator[threading.Event]:
+    """Note that somebody wants to stop, so that the step on hand is finished first."""
+    asked = threading.Event()
+    if threading.current_thread() is not threading.main_thread():
+        yield asked
+        return
+    signals = (signal.SIGINT, signal.SIGTERM)
+    before = [signal.signal(number, lambda *_: asked.set()) for number in signals]
+    try:
+        yield asked
+    finally:
+        for number, handler in zip(signals, before, strict=True):
+            signal.signal(number, handler)
+
+
 class Trainer:
     """One training, from its checkpoint if there is one.
 
@@ -108,15 +113,19 @@ class Trainer:
         task: What is trained.
         recipe: How.
         folder: Where `checkpoint.pt` lies.
+        start: File of weights to start from, none for random ones.
+
+    Raises:
+        InputError: The checkpoint is of another training.
     """
 
-    def __init__(self, task: Task, recipe: Recipe, folder: Path) -> None:
+    def __init__(self, task: Task, recipe: Recipe, folder: Path, start: Path | None = None) -> None:
         torch.manual_seed(recipe.seed)
         torch.set_num_threads(recipe.threads)
         self.task, self.recipe, self.path = task, recipe, folder / "checkpoint.pt"
         self.network = task.network().to(memory_format=torch.channels_last)
-        if recipe.start:
-            self.network.load_state_dict(load_file(recipe.start))
+        if start is not None:
+            self.network.load_state_dict(load_file(start))
         self.average = AveragedModel(
             self.network, avg_fn=_growing_average(recipe.average), use_buffers=True
         )
@@ -127,23 +136,29 @@ class Trainer:
         if self.path.exists():
             self._load()
 
-    def run(self) -> dict[str, float]:
-        """Train to the end and return the figures of the averaged network."""
-        held_out = self._held_out()
-        started, reported = time.perf_counter(), time.perf_counter()
-        before, figures = self.hours, {}
-        for batch in self._loader():
-            loss = self._step(batch)
-            now = time.perf_counter()
-            self.hours = before + (now - started) / 3600.0
-            finished = self._progress() >= 1.0
-            if finished or now - reported > self.recipe.report_s:
-                figures = self.task.metrics(self.average.module, held_out)
-                self._report(loss, figures)
-                self._save()
-                reported = time.perf_counter()
-            if finished:
-                break
+    def run(self, reporter: Reporter | None = None) -> dict[str, float]:
+        """Train to the end and return the figures of the averaged network.
+
+        Raises:
+            TrainingStoppedError: The process was asked to stop; its checkpoint is written.
+        """
+        told, held_out = reporter or PlainReporter(), self._held_out()
+        pace, reported, loss = _Pace(self), time.perf_counter(), nan
+        with _stop_asked() as stop:
+            for batch in self._batches():
+                loss = self._step(batch)
+                self.hours = pace.hours()
+                told.step(pace.progress(loss))
+                if stop.is_set():
+                    self._save()
+                    raise TrainingStoppedError(f"{self.path}: stopped after {self.seen} samples")
+                if time.perf_counter() - reported > self.recipe.report_s:
+                    self._save()
+                    told.figures(pace.progress(loss), self._figures(held_out))
+                    reported = time.perf_counter()
+        self._save()
+        figures = self._figures(held_out)
+        told.figures(pace.progress(loss), figures)
         return figures
 
     def _step(self, batch: Batch) -> float:
@@ -159,47 +174,55 @@ class Trainer:
         self.seen += self.recipe.batch
         return float(loss.detach())
 
-    def _progress(self) -> float:
-        return max(self.seen / self.recipe.samples, self.hours / self.recipe.hours)
+    def _share(self) -> float:
+        """Return how much of the way the learning rate has come."""
+        return max(self.seen / self.recipe.samples, self.hours / (self.recipe.hours or inf))
+
+    def _is_done(self) -> bool:
+        return self._share() >= 1.0 or self.seen >= (self.recipe.stop or inf)
 
     def _rate(self) -> float:
-        warm = min(self.seen / (200.0 * self.recipe.batch), 1.0)
-        turn = torch.pi * min(self._progress(), 1.0)
-        return (
-            self.recipe.rate
-            * warm
-            * (0.01 + 0.99 * 0.5 * (1.0 + float(torch.cos(torch.tensor(turn)))))
-        )
+        warm = min(self.seen / (WARM_UP * self.recipe.batch), 1.0)
+        fallen = 0.5 * (1.0 + cos(pi * min(self._share(), 1.0)))
+        return self.recipe.rate * warm * (0.01 + 0.99 * fallen)
 
-    def _loader(self) -> Iterator[Batch]:
-        # A resumed training goes on with scenes that it has not seen.
-        first = 10 * self.seen
-        stream = _Stream(self.task, self.recipe.seed, first, self.recipe.batch)
-        workers = self.recipe.workers
-        return iter(
-            DataLoader(
-                stream, batch_size=None, num_workers=workers, prefetch_factor=8 if workers else None
+    def _batches(self) -> Iterator[Batch]:
+        """Yield batches until it is done, after a stop from where it was stopped."""
+        workers, size = self.recipe.workers, self.recipe.batch
+        while not self._is_done():
+            number, had = divmod(self.seen // size, ROUND)
+            stream = _Stream(self.task, self.recipe.seed, number * SCENES_A_ROUND, size)
+            loader = DataLoader(
+                stream,
+                batch_size=None,
+                num_workers=workers,
+                prefetch_factor=8 if workers else None,
+                # A loader takes a number from a generator, and must leave the training's alone.
+                generator=torch.Generator(),
             )
-        )
+            for batch in islice(loader, had, ROUND):
+                yield batch
+                if self._is_done():
+                    return
 
     def _held_out(self) -> list[Batch]:
-        stream = self.task.batches(self.recipe.held_out_seed, 0, 1, self.recipe.batch)
-        return [next(stream) for _ in range(self.recipe.held_out_batches)]
+        with torch.random.fork_rng():
+            stream = self.task.batches(self.recipe.held_out_seed, 0, 1, self.recipe.batch)
+            return [next(stream) for _ in range(self.recipe.held_out_batches)]
 
-    def _report(self, loss: float, figures: dict[str, float]) -> None:
-        shown = "  ".join(f"{name} {value:.4f}" for name, value in figures.items())
-        print(  # noqa: T201  # progress of a command that runs for hours
-            f"{self.hours:.2f} h  {self.seen} samples  loss {loss:.4f}  {shown}", flush=True
-        )
+    def _figures(self, held_out: list[Batch]) -> dict[str, float]:
+        with torch.random.fork_rng():
+            return self.task.metrics(self.average.module, held_out)
 
     def _save(self) -> None:
         state = {
+            "task": self.task.name,
             "network": self.network.state_dict(),
             "average": self.average.state_dict(),
             "optimiser": self.optimiser.state_dict(),
+            "chance": torch.get_rng_state(),
             "seen": self.seen,
             "hours": self.hours,
-            "recipe": asdict(self.recipe),
         }
         unfinished = self.path.with_suffix(".new")
         torch.save(state, unfinished)
@@ -207,7 +230,37 @@ class Trainer:
 
     def _load(self) -> None:
         state = torch.load(self.path, weights_only=True)
+        if state["task"] != self.task.name:
+            raise InputError(
+                f"{self.path}: another training's checkpoint; got {state['task']!r}; "
+                f"expected {self.task.name!r}; try another folder"
+            )
         self.network.load_state_dict(state["network"])
         self.average.load_state_dict(state["average"])
         self.optimiser.load_state_dict(state["optimiser"])
+        torch.set_rng_state(state["chance"])
         self.seen, self.hours = state["seen"], state["hours"]
+
+
+class _Pace:
+    """How fast a training goes from here on."""
+
+    def __init__(self, trainer: Trainer) -> None:
+        self._trainer, self._seen, self._hours = trainer, trainer.seen, trainer.hours
+        self._wall_s, self._process_s = time.perf_counter(), time.process_time()
+
+    def hours(self) -> float:
+        """Return the training's process time so far."""
+        return self._hours + (time.process_time() - self._process_s) / 3600.0
+
+    def progress(self, loss: float) -> Progress:
+        """Return where the training stands."""
+        trainer, recipe = self._trainer, self._trainer.recipe
+        wall_s = max(time.perf_counter() - self._wall_s, 1e-9)
+        goal = min(recipe.samples, recipe.stop or recipe.samples)
+        rate_per_s = (trainer.seen - self._seen) / wall_s
+        left_s = max(goal - trainer.seen, 0) / rate_per_s if rate_per_s > 0.0 else inf
+        if recipe.hours is not None:
+            speed = max(trainer.hours - self._hours, 1e-12) / wall_s
+            left_s = min(left_s, max(recipe.hours - trainer.hours, 0.0) / speed)
+        return Progress(trainer.seen, goal, trainer.hours, recipe.hours, rate_per_s, left_s, loss)
