@@ -30,14 +30,23 @@ def prepare(image: GreyImage) -> Maps:
         repeated.
     """
     rows, columns = image.shape
-    grey = cv2.copyMakeBorder(
+    padded = cv2.copyMakeBorder(
         image, 0, -rows % MULTIPLE, 0, -columns % MULTIPLE, cv2.BORDER_REPLICATE
-    ).astype(np.float32)
-    whole = max(float(image.std()), LEAST)
+    )
+    whole = max(float(cv2.meanStdDev(image)[1][0, 0]), LEAST)
     window = (NEAR_PX, NEAR_PX)
-    middle = cv2.blur(grey, window, borderType=cv2.BORDER_REPLICATE)
-    square = cv2.blur(grey * grey, window, borderType=cv2.BORDER_REPLICATE)
-    near = np.sqrt(np.maximum(square - middle * middle, 0.0) + (LEAST_SHARE * whole) ** 2)
-    maps = np.stack([(grey - float(np.median(image))) / whole, (grey - middle) / near])
-    clipped: Maps = np.clip(maps, -BRIGHTEST, BRIGHTEST)
-    return clipped
+    middle = cv2.boxFilter(padded, cv2.CV_32F, window, borderType=cv2.BORDER_REPLICATE)
+    square = cv2.sqrBoxFilter(padded, cv2.CV_32F, window, borderType=cv2.BORDER_REPLICATE)
+    near = np.sqrt(np.maximum(square - middle * middle, 0.0) + np.float32(LEAST_SHARE * whole) ** 2)
+    maps = np.empty((CHANNELS, *padded.shape), np.float32)
+    levels = (np.arange(256, dtype=np.float32) - _median(image)) / np.float32(whole)
+    maps[0] = levels.clip(-BRIGHTEST, BRIGHTEST)[padded]
+    np.subtract(padded, middle, out=maps[1])
+    np.divide(maps[1], near, out=maps[1])
+    np.clip(maps[1], -BRIGHTEST, BRIGHTEST, out=maps[1])
+    return maps
+
+
+def _median(image: GreyImage) -> np.float32:
+    counts = cv2.calcHist([image], [0], None, [256], [0.0, 256.0])
+    return np.float32(np.searchsorted(np.cumsum(counts), 0.5 * image.size))
