@@ -49,4 +49,4 @@ def prepare(image: GreyImage) -> Maps:
 
 def _median(image: GreyImage) -> np.float32:
     counts = cv2.calcHist([image], [0], None, [256], [0.0, 256.0])
-    return np.float32(np.searchsorted(np.cumsum(counts), 0.5 * image.size))
+    return np.float32(np.searchsorted(np.cumsum(counts, dtype=float), 0.5 * image.size))
