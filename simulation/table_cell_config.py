@@ -1,13 +1,14 @@
 """What can be set about the table cell: light to import, checked before anything is built."""
 
 from collections.abc import Mapping
-from typing import Annotated, Literal, TypeVar
+from typing import Annotated, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from pydantic_core import ErrorDetails
 
 from executive.core.errors import InputError
 from executive.core.registry import closest
+from simulation.cable.knot_names import KnotName
 
 
 class _Document(BaseModel):
@@ -22,7 +23,7 @@ class CableScenario(_Document):
         file: JSON file `{"nodes_m": [[x, y, z], ...]}` whose centre line is laid instead.
     """
 
-    knot: Literal["overhand", "figure_8", "none"] = "overhand"
+    knot: KnotName = "overhand"
     file: str = ""
 
 

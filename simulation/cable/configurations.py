@@ -1,14 +1,17 @@
-"""Starting configurations: a cable with one knot or none, at rest on the table."""
+"""Starting configurations: a cable with one knot, a fake one or none, at rest on the table."""
 
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
 
 from executive.core.errors import InputError
-from perception.cable.topology import Knottedness, classify_curve
+from perception.cable.topology import Knottedness, classify_curve, close_over, curve_crossings
+from perception.cable.topology.alexander import alexander_polynomial
+from perception.cable.topology.simplify import simplify
 from simulation.cable.heights import lift_over
-from simulation.cable.knots import KNOT_NAMES, TEMPLATES, KnotName, KnotTemplate
+from simulation.cable.knots import KNOT_NAMES, TEMPLATES, KnotName, KnotTemplate, fake_overs
 from simulation.cable.layout import Area, LayoutRules, grow_end
 from simulation.cable.parameters import RodParameters
 from simulation.cable.rod import Rod
@@ -27,10 +30,12 @@ class ConfigurationRules:
 
     Attributes:
         length_m: Length of the cable.
-        diameter_m: Smallest and largest size of the knot.
+        diameter_m: Smallest and largest size of the knot; one that has no room for its crossings
+            is laid somewhat larger.
         place: Between which fractions of the cable's length the knot lies.
         area: Where the arms reach, and all of the cable lies.
-        most_crossings: Most crossings of the whole cable.
+        most_crossings: Most crossings of the whole cable; where the knot alone takes up as many,
+            there may be one more than it has.
         shortest_end_m: Least length of a free end.
     """
 
@@ -46,6 +51,8 @@ class ConfigurationRules:
 SPRING_BACK_M = 0.012
 # An upper strand starts this many radii higher than the lower one: just clear of it.
 LIFT_RADII = 2.2
+# Crossings of a knot are at least so many nodes apart: over and under take turns in between.
+NODES_APART = 2.2
 # How many plans are drawn before giving up: most get stuck, and cost a few hundredths of a second.
 PLANS = 500
 
@@ -55,6 +62,7 @@ def starting_configuration(
     rng: np.random.Generator,
     parameters: RodParameters | None = None,
     rules: ConfigurationRules | None = None,
+    fake: bool = False,
 ) -> Floats:
     """Return a cable at rest with the named knot, both its ends free and in sight.
 
@@ -63,6 +71,7 @@ def starting_configuration(
         rng: Source of all randomness: an equal state gives an equal configuration.
         parameters: What the cable is made of.
         rules: Where and how it lies.
+        fake: Whether it shall but look like that knot, and be none.
 
     Returns:
         Node positions [m], world frame, shape (N, 3).
@@ -75,10 +84,10 @@ def starting_configuration(
         raise InputError(f"cable.knot: unknown knot; got {knot!r}; expected one of: {known}")
     parameters, rules = parameters or RodParameters(), rules or ConfigurationRules()
     for _ in range(PLANS):
-        plan = draw_plan(knot, rng, parameters, rules)
-        if plan is not None and _is_tied(plan, knot):
+        plan = draw_plan(knot, rng, parameters, rules, fake)
+        if plan is not None and is_tied(plan, knot, fake):
             nodes_m = settle(plan, parameters)
-            if _follows(nodes_m, knot, rules):
+            if is_tied(nodes_m, knot, fake) and _follows(nodes_m, knot, rules):
                 return nodes_m
     raise InputError(
         f"cable.knot: no configuration with {knot!r} within the rules; got none in {PLANS} "
@@ -87,7 +96,11 @@ def starting_configuration(
 
 
 def draw_plan(
-    knot: KnotName, rng: np.random.Generator, parameters: RodParameters, rules: ConfigurationRules
+    knot: KnotName,
+    rng: np.random.Generator,
+    parameters: RodParameters,
+    rules: ConfigurationRules,
+    fake: bool = False,
 ) -> Floats | None:
     """Draw a centre line with true over and under, not yet at rest; None when it got stuck."""
     layout = LayoutRules(_shrunk(rules.area, SPRING_BACK_M), parameters.node_spacing_m)
@@ -95,7 +108,7 @@ def draw_plan(
     if core is None:
         return None
     template = TEMPLATES.get(knot)
-    spare = rules.most_crossings - (template.crossings if template else 0)
+    spare = _most_crossings(knot, rules) - (template.crossings if template else 0)
     free_m = rules.length_m - (len(core) - 1) * layout.spacing_m
     longest = 1.0 - rules.shortest_end_m / free_m
     share = float(np.clip(rng.uniform(*rules.place), 1.0 - longest, longest))
@@ -107,7 +120,9 @@ def draw_plan(
         return None
     curve = curve[::-1]
     start = len(curve) - round(free_m * share / layout.spacing_m) - len(core)
-    return _raise_over(curve, (start, start + len(core) - 1), template, rng, parameters)
+    fakes = fake_overs(template) if template and fake else ()
+    over = fakes[int(rng.integers(len(fakes)))] if fakes else ()
+    return _raise_over(curve, (start, start + len(core) - 1), template, over, rng, parameters)
 
 
 def settle(nodes_m: Floats, parameters: RodParameters, longest_s: float = 6.0) -> Floats:
@@ -132,7 +147,10 @@ def _place_core(
 ) -> Floats | None:
     """Return the knot, or a straight piece, somewhere in the area, shape (N, 2)."""
     if knot in TEMPLATES:
-        curve = TEMPLATES[knot].curve_m(rng.uniform(*rules.diameter_m), layout.spacing_m)
+        template = TEMPLATES[knot]
+        least_m = NODES_APART * layout.spacing_m * template.diameter / template.closest
+        diameter_m = max(float(rng.uniform(*rules.diameter_m)), least_m)
+        curve = template.curve_m(diameter_m, layout.spacing_m)
     else:
         curve = np.column_stack([np.arange(8) * layout.spacing_m, np.zeros(8)])
     angle = rng.uniform(-np.pi, np.pi)
@@ -151,13 +169,14 @@ def _raise_over(
     curve: Floats,
     knot: tuple[int, int],
     template: KnotTemplate | None,
+    over: tuple[bool, ...],
     rng: np.random.Generator,
     parameters: RodParameters,
 ) -> Floats:
     """Lift the upper strand of every crossing over the lower one, shape (N, 3).
 
-    Crossings between the nodes `knot` follow the template, or its mirror image; who is on top
-    at the others is drawn.
+    Crossings between the nodes `knot` follow the template, or `over` where given, or the mirror
+    image; who is on top at the others is drawn.
     """
     flat = np.column_stack([curve, np.full(len(curve), parameters.radius_m)])
     crossings = centre_line_crossings(flat)
@@ -165,30 +184,38 @@ def _raise_over(
     mirrored = bool(rng.integers(2))
     drawn = {crossing: bool(rng.integers(2)) for crossing in crossings}
     if template is not None:
-        for crossing, on_top in zip(inside, template.first_over(inside), strict=True):
+        for crossing, on_top in zip(inside, template.first_over(inside, over), strict=True):
             drawn[crossing] = on_top != mirrored
     first_over = [drawn[crossing] for crossing in crossings]
     return lift_over(flat, crossings, first_over, LIFT_RADII * parameters.radius_m)
 
 
-def _is_tied(nodes_m: Floats, knot: KnotName) -> bool:
-    """Return whether exactly the wanted knot is tied.
+def is_tied(nodes_m: Floats, knot: KnotName, fake: bool = False) -> bool:
+    """Return whether exactly the wanted knot is tied, none for a fake one or for `none`.
 
-    The templates are the only knots with three and with four crossings.
+    The knots are told apart by their Alexander polynomials, which all differ.
     """
-    verdict = classify_curve(nodes_m)
-    if knot not in TEMPLATES:
-        return verdict.state is Knottedness.UNKNOT
-    wanted = TEMPLATES[knot].crossings
-    return verdict.state is Knottedness.KNOTTED and verdict.reduced_crossings == wanted
+    if fake or knot not in TEMPLATES:
+        return classify_curve(nodes_m).state is Knottedness.UNKNOT
+    closed = close_over(curve_crossings(nodes_m))
+    return alexander_polynomial(simplify(closed)) == _polynomial(TEMPLATES[knot])
+
+
+@cache
+def _polynomial(template: KnotTemplate) -> tuple[int, ...]:
+    return alexander_polynomial(template.diagram())
+
+
+def _most_crossings(knot: KnotName, rules: ConfigurationRules) -> int:
+    own = TEMPLATES[knot].crossings if knot in TEMPLATES else 0
+    return rules.most_crossings if own < rules.most_crossings else own + 1
 
 
 def _follows(nodes_m: Floats, knot: KnotName, rules: ConfigurationRules) -> bool:
-    """Return whether a cable at rest keeps the rules: knot, area, crossings, ends in sight."""
+    """Return whether a cable at rest keeps the rules: area, crossings, ends in sight."""
     return (
-        _is_tied(nodes_m, knot)
-        and rules.area.contains(nodes_m[:, :2])
-        and len(centre_line_crossings(nodes_m)) <= rules.most_crossings
+        rules.area.contains(nodes_m[:, :2])
+        and len(centre_line_crossings(nodes_m)) <= _most_crossings(knot, rules)
         and ends_in_sight(nodes_m)
     )
 

@@ -27,7 +27,8 @@ def test_a_scenario_names_the_knot_or_the_file():
         ),
         (
             {"cable": {"knot": "granny"}},
-            "scenario: cable.knot: got 'granny'; expected 'overhand', 'figure_8' or 'none'",
+            "scenario: cable.knot: got 'granny'; expected 'none', 'overhand', "
+            "'figure_8', 'overhand_honda', 'bowline', 'linked_overhand' or 'figure_8_honda'",
         ),
     ],
 )

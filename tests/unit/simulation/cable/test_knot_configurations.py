@@ -18,6 +18,15 @@ from simulation.cable.parameters import RodParameters
 from simulation.cable.rod import Rod
 from simulation.cable.truth import cable_truth, centre_line_crossings
 
+LEAST_CROSSINGS = {
+    "overhand": 3,
+    "figure_8": 4,
+    "overhand_honda": 5,
+    "bowline": 6,
+    "linked_overhand": 8,
+    "figure_8_honda": 6,
+}
+
 
 @pytest.fixture(scope="module", params=KNOT_NAMES)
 def laid(request):
@@ -32,16 +41,16 @@ def test_the_wanted_knot_is_tied_and_no_other(laid):
         assert cable_truth(nodes_m).untangled
     else:
         assert verdict.state is Knottedness.KNOTTED
-        assert verdict.reduced_crossings == {"overhand": 3, "figure_8": 4}[knot]
+        assert verdict.reduced_crossings == LEAST_CROSSINGS[knot]
         assert not cable_truth(nodes_m).untangled
 
 
 def test_the_cable_lies_whole_in_reach_with_its_ends_in_sight(laid):
-    _, nodes_m = laid
+    knot, nodes_m = laid
     assert nodes_m.shape == (301, 3)
     assert REACHABLE.contains(nodes_m[:, :2])
     assert nodes_m[:, 2].max() < 0.03
-    assert len(centre_line_crossings(nodes_m)) <= 6
+    assert len(centre_line_crossings(nodes_m)) <= {"bowline": 9, "linked_overhand": 9}.get(knot, 7)
     assert ends_in_sight(nodes_m)
     assert np.linalg.norm(np.diff(nodes_m, axis=0), axis=1).sum() == pytest.approx(3.0, rel=0.02)
 
@@ -70,10 +79,11 @@ def test_settling_keeps_the_knot_of_every_plan():
 
 
 @pytest.mark.parametrize("knot", TEMPLATES)
-def test_templates_cross_as_often_as_they_say(knot):
-    curve = TEMPLATES[knot].curve_m(0.15, 0.005)
-    crossings = centre_line_crossings(np.column_stack([curve, np.zeros(len(curve))]))
-    assert 2 * len(crossings) == len(TEMPLATES[knot].over)
+def test_a_fake_knot_lies_like_it_and_is_none(knot):
+    nodes_m = starting_configuration(knot, np.random.default_rng(4), fake=True)
+    assert classify_curve(nodes_m).state is Knottedness.UNKNOT
+    assert len(centre_line_crossings(nodes_m)) >= TEMPLATES[knot].crossings
+    assert ends_in_sight(nodes_m)
 
 
 def test_an_unknown_knot_is_answered_with_the_known_ones():

@@ -1,0 +1,14 @@
+"""Names of the knots that a cable can be laid with; light to import."""
+
+from typing import Literal, get_args
+
+KnotName = Literal[
+    "none",
+    "overhand",
+    "figure_8",
+    "overhand_honda",
+    "bowline",
+    "linked_overhand",
+    "figure_8_honda",
+]
+KNOT_NAMES: tuple[KnotName, ...] = get_args(KnotName)
