@@ -10,6 +10,7 @@ from benchmarks.report import write_page
 
 BENCHMARKS = {
     "resuming": ("benchmarks.resuming", "untangling missions that are killed and gone on with"),
+    "beliefs": ("benchmarks.beliefs", "P(knotted), P(knot) and what to ask next, without images"),
     "certificates": ("benchmarks.certificates", "knotted or not, with proofs that are replayed"),
     "checking": ("benchmarks.checking", "check, lint and fmt: time over that of Python itself"),
     "cable-physics": ("benchmarks.cable_physics", "speed of the cable beside PyBullet; knots kept"),
@@ -20,6 +21,7 @@ BENCHMARKS = {
         "benchmarks.inspecting",
         "an hour of recording in the page; cost of watching",
     ),
+    "sight": ("benchmarks.sight", "the detector beside the classic mask and ends"),
     "tracing": ("benchmarks.tracing", "tracers on drawn scenes with exact truth"),
     "untangling": ("benchmarks.untangling", "the untangling mission on fresh seeds"),
 }
