@@ -6,6 +6,7 @@ neither.
 
 import argparse
 import json
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -97,12 +98,12 @@ def _write_golden(network: nn.Module, name: str, path: Path) -> None:
     save_file({"inputs": inputs, "answer": answer.contiguous()}, path)
 
 
-def main() -> None:
+def main(arguments: Sequence[str] | None = None) -> None:
     """Fit the temperature, and write it and the figures."""
     parser = argparse.ArgumentParser(prog="python -m perception.training.calibrate")
     parser.add_argument("folder", type=Path)
     parser.add_argument("--batches", type=int, default=40)
-    options = parser.parse_args()
+    options = parser.parse_args(arguments)
     folder: Path = options.folder
     config = read_config(folder)
     ways = {
