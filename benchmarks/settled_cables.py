@@ -1,11 +1,13 @@
 """Lay cables with the physics and pull them about: centre lines that training draws from.
 
-`python -m benchmarks.settled_cables` writes `perception/training/settled.npz`. Perception does
-not know the physics, so what it learns from is kept in a file.
+The first cables have the plainest knots or none, at all sizes. Then come all knots of the
+thesis, and fakes of them, loose and dense by turns. `python -m benchmarks.settled_cables`
+writes `perception/training/settled.npz`. Perception does not know the physics, so what it
+learns from is kept in a file.
 """
 
 import argparse
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +15,7 @@ from numpy.typing import NDArray
 
 from executive.core.errors import InputError
 from simulation.cable.configurations import ConfigurationRules, starting_configuration
-from simulation.cable.knots import KnotName
+from simulation.cable.knots import TEMPLATES, KnotName
 from simulation.cable.layout import Area
 from simulation.cable.parameters import RodParameters
 from simulation.cable.rod import Rod
@@ -22,28 +24,57 @@ Floats = NDArray[np.float64]
 
 TARGET = Path("perception/training/settled.npz")
 SEED = 970_001
-KNOTS: tuple[KnotName, ...] = ("overhand", "figure_8", "none")
+PLAIN: tuple[KnotName, ...] = ("overhand", "figure_8", "none")
+PLAIN_CABLES = 160
 # Lengths are kept as whole tenths of a millimetre.
 UNIT_M = 1.0e-4
 STEP_S = 1.0 / 240.0
 PULL_M_S = 0.25
-PULLS = 4
+# How often plain cables are pulled, and the others.
+PULLS, FEWER_PULLS = 4, 2
 # The rest are drawn outwards, which pulls knots tight.
 INWARDS = 0.65
-RULES = ConfigurationRules(
-    length_m=2.4, diameter_m=(0.06, 0.2), most_crossings=8, area=Area((-0.45, -0.32), (0.45, 0.32))
-)
+AREA = Area((-0.45, -0.32), (0.45, 0.32))
+RULES = ConfigurationRules(length_m=2.4, diameter_m=(0.06, 0.2), most_crossings=8, area=AREA)
+DENSE = replace(RULES, diameter_m=(0.05, 0.12), most_crossings=10)
+LOOSE = replace(RULES, diameter_m=(0.2, 0.4), most_crossings=9, length_m=3.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Sort:
+    """What kind of cable to lay.
+
+    Attributes:
+        knot: What is tied.
+        fake: Whether it is but a fake.
+        rules: How large it is, and how it lies.
+        pulls: How often it is pulled about.
+    """
+
+    knot: KnotName
+    fake: bool
+    rules: ConfigurationRules
+    pulls: int
+
+
+def sort_of(number: int) -> Sort:
+    """Return of which sort the cable with a number is."""
+    if number < PLAIN_CABLES:
+        return Sort(PLAIN[number % len(PLAIN)], False, RULES, PULLS)
+    kinds = [(knot, fake) for fake in (False, True) for knot in TEMPLATES]
+    turn, kind = divmod(number - PLAIN_CABLES, len(kinds))
+    return Sort(*kinds[kind], (DENSE, LOOSE)[turn % 2], FEWER_PULLS)
 
 
 def settled_cables(seed: int) -> list[Floats]:
     """Return one cable as it was laid, and after each of some pulls, shape (N, 3) each."""
-    rng = np.random.default_rng([SEED, seed])
+    rng, sort = np.random.default_rng([SEED, seed]), sort_of(seed)
     parameters = replace(
         RodParameters(), bending_stiffness_n_m2=float(np.exp(rng.uniform(-10.8, -9.2)))
     )
-    nodes_m = starting_configuration(KNOTS[seed % len(KNOTS)], rng, parameters, RULES)
+    nodes_m = starting_configuration(sort.knot, rng, parameters, sort.rules, sort.fake)
     found, rod = [nodes_m], Rod(nodes_m, parameters)
-    for number in range(PULLS):
+    for number in range(sort.pulls):
         _pull(rod, f"hand {number}", rng)
         found.append(rod.positions_m.copy())
     return found
@@ -76,7 +107,7 @@ def main() -> None:
     """Lay cables and write their centre lines."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.settled_cables")
     parser.add_argument("--out", type=Path, default=TARGET)
-    parser.add_argument("--cables", type=int, default=150)
+    parser.add_argument("--cables", type=int, default=292)
     options = parser.parse_args()
     lines: list[Floats] = []
     for seed in range(options.cables):
