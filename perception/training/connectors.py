@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Literal
 
 import cv2
 import numpy as np
@@ -9,6 +10,7 @@ from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
 Picture = NDArray[np.float32]
+Kind = Literal["plug", "usb", "jack", "adapter"]
 
 BARE = 0.18
 # Whatever its cable, a connector may be black or white.
@@ -31,7 +33,7 @@ class Connector:
         greys: Grey value of each part.
     """
 
-    kind: str
+    kind: Kind
     cable: int
     end: int
     covered: bool
@@ -83,7 +85,7 @@ def draw_up_connectors(
             continue
         out = tip[:2] - inner[:2]
         out /= max(float(np.linalg.norm(out)), 1e-9)
-        kind = str(rng.choice(list(_KINDS), p=[0.46, 0.18, 0.12, 0.24]))
+        kind = [*_KINDS][rng.choice(len(_KINDS), p=[0.46, 0.18, 0.12, 0.24])]
         parts = _KINDS[kind](rng, _Place(tip[:2], out, width_px), _grey(rng, brightness))
         outlines, greys = zip(*parts, strict=True)
         made.append(Connector(kind, cable, end, bool(rng.random() < 0.5), outlines, greys))
@@ -156,7 +158,7 @@ def _adapter(rng: np.random.Generator, place: _Place, grey: float) -> _Parts:
     return parts
 
 
-_KINDS: dict[str, Callable[[np.random.Generator, _Place, float], _Parts]] = {
+_KINDS: dict[Kind, Callable[[np.random.Generator, _Place, float], _Parts]] = {
     "plug": _plug,
     "usb": _usb,
     "jack": _jack,

@@ -9,6 +9,7 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from io import BytesIO
 from itertools import islice
 from math import cos, inf, nan, pi
 from pathlib import Path
@@ -225,7 +226,10 @@ class Trainer:
             "hours": self.hours,
         }
         unfinished = self.path.with_suffix(".new")
-        torch.save(state, unfinished)
+        # PyTorch's own writer does not say why a disk did not take it.
+        packed = BytesIO()
+        torch.save(state, packed)
+        unfinished.write_bytes(packed.getvalue())
         unfinished.replace(self.path)
 
     def _load(self) -> None:

@@ -1,9 +1,12 @@
 """How far a training is, and how that is told."""
 
-from collections.abc import Mapping
+import time
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from math import inf
 from typing import Protocol
+
+QUIET_S = 60.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,19 +54,33 @@ class Reporter(Protocol):
         ...
 
 
+def _print(text: str) -> None:
+    print(text, flush=True)  # noqa: T201  # progress of a command that runs for hours
+
+
 class PlainReporter:
-    """Prints a line for each set of figures."""
+    """Writes a line for each set of figures, and one a minute in between.
+
+    Args:
+        write: Takes each line.
+    """
+
+    def __init__(self, write: Callable[[str], None] = _print) -> None:
+        self._write, self._written = write, time.perf_counter()
 
     def step(self, progress: Progress) -> None:
-        """Say nothing: batches are many."""
+        """Say where it stands, once a minute."""
+        if time.perf_counter() - self._written > QUIET_S:
+            self.note(describe(progress))
 
     def figures(self, progress: Progress, figures: Mapping[str, float]) -> None:
-        """Print where it stands."""
+        """Say where it stands, and the figures."""
         self.note(f"{describe(progress)}  {shown(figures)}")
 
     def note(self, text: str) -> None:
-        """Print a text."""
-        print(text, flush=True)  # noqa: T201  # progress of a command that runs for hours
+        """Write a text."""
+        self._written = time.perf_counter()
+        self._write(text)
 
 
 def describe(progress: Progress) -> str:

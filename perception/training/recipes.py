@@ -1,5 +1,6 @@
 """How a version is trained: the file `recipe.yaml` of every trained version."""
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -8,6 +9,8 @@ from pydantic import BaseModel, ConfigDict, Field, PositiveInt, ValidationError
 
 from executive.core.errors import InputError
 
+FILE = "recipe.yaml"
+VERSIONS = Path(__file__).parents[1] / "models"
 PREVIOUS = "previous"
 # However little is trained, this much is measured on.
 LEAST = 2
@@ -143,6 +146,34 @@ def read_recipe(path: Path) -> VersionRecipe:
             for fault in error.errors()
         )
         raise InputError(faults) from error
+
+
+def read_recipes(folder: Path | None = None) -> dict[str, VersionRecipe]:
+    """Return the recipes of all versions in a folder, by name.
+
+    Args:
+        folder: Of versions, or of one; none for those of this project.
+
+    Raises:
+        InputError: One of them is no recipe, or there are none.
+    """
+    where = folder or VERSIONS
+    paths = [where / FILE] if (where / FILE).is_file() else sorted(where.glob(f"*/{FILE}"))
+    if not paths:
+        raise InputError(f"{where}: no {FILE} in it, nor in a folder of it; try a version's folder")
+    return {path.absolute().parent.name: read_recipe(path) for path in paths}
+
+
+def newest_recipes(recipes: Mapping[str, VersionRecipe]) -> dict[str, VersionRecipe]:
+    """Return the recipe of the newest version of each task: the one with the highest number."""
+
+    def number(name: str) -> int:
+        return int("".join(filter(str.isdigit, name.rpartition("_")[2])) or 0)
+
+    newest: dict[str, str] = {}
+    for name in sorted(recipes, key=number):
+        newest[recipes[name].task] = name
+    return {name: recipes[name] for name in newest.values()}
 
 
 def write_recipe(path: Path, recipe: VersionRecipe) -> None:

@@ -3,11 +3,13 @@
 from collections.abc import Callable, Mapping, Sequence
 from importlib import import_module
 from types import MappingProxyType
-from typing import cast
+from typing import TYPE_CHECKING, cast
 
 from executive.core.errors import InputError
 from executive.core.registry import closest
-from perception.training.loop import Task
+
+if TYPE_CHECKING:
+    from perception.training.loop import Task
 
 # Takes a command line: the folder of a version, and options.
 Step = Callable[[Sequence[str]], None]
@@ -21,6 +23,16 @@ TASKS: Mapping[str, str] = MappingProxyType(
     }
 )
 
+# What usually comes after the training of a task.
+AFTER: Mapping[str, tuple[str, ...]] = MappingProxyType(
+    {
+        "tracer": ("calibrate",),
+        "crossing": ("calibrate",),
+        "sight": ("sight-calibration",),
+        "thesis-crossing": ("calibrate",),
+    }
+)
+
 STEPS: Mapping[str, str] = MappingProxyType(
     {
         "calibrate": "calibrate:main",
@@ -30,7 +42,7 @@ STEPS: Mapping[str, str] = MappingProxyType(
 )
 
 
-def load_task(name: str) -> Task:
+def load_task(name: str) -> "Task":
     """Return a task.
 
     Raises:
@@ -39,7 +51,7 @@ def load_task(name: str) -> Task:
     return cast("Task", _named("task", name, TASKS)())
 
 
-def task_name(task: Task) -> str:
+def task_name(task: "Task") -> str:
     """Return the name that a task is known by."""
     return next(name for name, path in TASKS.items() if path.endswith(f":{type(task).__name__}"))
 
