@@ -57,7 +57,7 @@ def find_knots(
         return ()
     policy = grasp_policy(config or GraspConfig(), pixels)
     return tuple(
-        _held(strand, index, interval, choose_grasps(policy, strand, interval))
+        held_knot(policy, strand, index, interval)
         for index in range(len(traces))
         for strand in (held_strand(traces, index, crossings),)
         for interval in knot_intervals(traces[index], index, crossings)
@@ -87,7 +87,11 @@ def choose_grasps(
     return policy.choose(strand, interval[0] * strand.length_px, interval[1] * strand.length_px)
 
 
-def _held(strand: HeldStrand, index: int, interval: tuple[float, float], grasps: CagePinch) -> Knot:
+def held_knot(
+    policy: GraspPolicy, strand: HeldStrand, index: int, interval: tuple[float, float]
+) -> Knot:
+    """Return the knot over an interval of a trace, held where a policy chooses."""
+    grasps = choose_grasps(policy, strand, interval)
     return Knot(
         trace=index,
         interval=interval,

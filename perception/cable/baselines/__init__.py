@@ -1,0 +1,1 @@
+"""Systems from the literature, built anew from their descriptions, to compare with."""

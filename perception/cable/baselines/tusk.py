@@ -1,0 +1,141 @@
+"""TUSK, the thesis's perception (V. Viswanath, chapter 3), built anew from its description.
+
+One trace from one end, over and under at each crossing, Reidemeister moves I and II, and the
+knot rule. Which tracer, and whether crossings are cancelled, can be chosen: with the analytic
+tracer, or without cancelling, it is one of the thesis's ablations.
+"""
+
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from perception.cable.baselines.one_trace import first_trace
+from perception.cable.grasp_points import CablePixels, GraspConfig, held_strand
+from perception.cable.interfaces import CableVision, CrossingClassifier, Tracer
+from perception.cable.knots import grasp_policy, held_knot, visits_of
+from perception.cable.topology.rule import Visit, knot_intervals, uncancelled_intervals
+from perception.cable.types import CableScene, Crossing, Endpoint, Knot, Points, Trace, TraceEnd
+from perception.cable.width import width_under
+from perception.camera import GreyImage
+
+NOTHING_KNOWN = 0.5
+
+
+@dataclass(frozen=True, slots=True)
+class TuskConfig:
+    """Settings of TUSK.
+
+    Attributes:
+        cancel: Whether crossings are cancelled before the knot rule is asked.
+        grasps: The search for cage and pinch points.
+    """
+
+    cancel: bool = True
+    grasps: GraspConfig = field(default_factory=lambda: GraspConfig(policy="tusk"))
+
+
+class TuskVision:
+    """Implements `CableVision` as the thesis does.
+
+    Args:
+        parts: Sees ends and cable pixels, which the thesis leaves to a detector of its own.
+        tracer: Follows the cable.
+        classifier: Tells over from under.
+        config: Settings.
+    """
+
+    def __init__(
+        self,
+        parts: CableVision,
+        tracer: Tracer,
+        classifier: CrossingClassifier,
+        config: TuskConfig | None = None,
+    ) -> None:
+        self._parts, self._tracer, self._classifier = parts, tracer, classifier
+        self._config = config or TuskConfig()
+
+    def cable_pixels(self, image: GreyImage) -> NDArray[np.bool_]:
+        """Say which pixels show cable or connector, shape (height, width)."""
+        return self._parts.cable_pixels(image)
+
+    def pieces(self, image: GreyImage) -> tuple[Points, ...]:
+        """Return unbranched pieces of centre line, longest first, shape (N, 2) each."""
+        return self._parts.pieces(image)
+
+    def endpoints(self, image: GreyImage) -> tuple[Endpoint, ...]:
+        """Find the ends of cables."""
+        return self._parts.endpoints(image)
+
+    def start_points(self, image: GreyImage, endpoint: Endpoint) -> Points | None:
+        """Follow the cable for about 96 px from an end, shape (N, 2); None when unclear."""
+        return self._parts.start_points(image, endpoint)
+
+    def trace(
+        self, image: GreyImage, start_px: Points, endpoints: Sequence[Endpoint]
+    ) -> Trace | None:
+        """Follow one cable; see `Tracer.trace`."""
+        return self._tracer.trace(image, start_px, endpoints)
+
+    def explained_share(self, image: GreyImage, trace: Trace) -> float:
+        """Return the share of cable pixels in view that a trace accounts for, in [0, 1]."""
+        return self._parts.explained_share(image, trace)
+
+    def crossings(self, image: GreyImage, traces: Sequence[Trace]) -> tuple[Crossing, ...]:
+        """Classify all crossings; see `CrossingClassifier.classify`."""
+        return self._classifier.classify(image, traces)
+
+    def knots(
+        self, image: GreyImage, traces: Sequence[Trace], crossings: Sequence[Crossing]
+    ) -> tuple[Knot, ...]:
+        """Find what the rule takes for knots, and where to hold them."""
+        if not traces:
+            return ()
+        width_px = width_under(image, [trace.points_px for trace in traces])
+        policy = grasp_policy(self._config.grasps, CablePixels(self.cable_pixels(image), width_px))
+        return tuple(
+            held_knot(policy, held_strand(traces, k, crossings), k, (begin.arc, close.arc))
+            for k in range(len(traces))
+            for begin, close, _ in self._potential_knots(k, crossings)
+        )
+
+    def knotted_probability(self, traces: Sequence[Trace], crossings: Sequence[Crossing]) -> float:
+        """Return the confidence of the surest knot, 0 where a whole trace shows none.
+
+        The thesis gives each knot a confidence, those of its first and its last crossing
+        multiplied; it is no probability, and nothing is said of cables without a knot.
+        """
+        sure = [c for k in range(len(traces)) for *_, c in self._potential_knots(k, crossings)]
+        whole = any(trace.end is TraceEnd.ENDPOINT for trace in traces)
+        return max(sure, default=0.0 if whole else NOTHING_KNOWN)
+
+    def scene(self, image: GreyImage, start_px: Points | None = None) -> CableScene:
+        """Do all steps on one image, from a given start or from the first end that is clear."""
+        began_s = time.perf_counter()
+        endpoints = self.endpoints(image)
+        if start_px is None:
+            traces = first_trace(self._parts, self._tracer, image, endpoints)
+        else:
+            trace = self.trace(image, start_px, endpoints)
+            traces = () if trace is None else (trace,)
+        crossings = self.crossings(image, traces)
+        return CableScene(
+            traces=traces,
+            endpoints=endpoints,
+            crossings=crossings,
+            knots=self.knots(image, traces, crossings),
+            knotted_probability=self.knotted_probability(traces, crossings),
+            seconds=time.perf_counter() - began_s,
+        )
+
+    def _potential_knots(
+        self, index: int, crossings: Sequence[Crossing]
+    ) -> list[tuple[Visit, Visit, float]]:
+        """Return first and last visit of each potential knot of a trace, and its confidence."""
+        own = [c for c in crossings if c.trace_over == index and c.trace_under == index]
+        visits = visits_of(own)
+        found = knot_intervals(visits) if self._config.cancel else uncancelled_intervals(visits)
+        # Both visits are of one crossing; each has the confidence that the crossing has.
+        return [(begin, close, own[begin.crossing].probability ** 2) for begin, close in found]
