@@ -22,6 +22,7 @@ BENCHMARKS = {
         "an hour of recording in the page; cost of watching",
     ),
     "sight": ("benchmarks.sight", "the detector beside the classic mask and ends"),
+    "crossings": ("benchmarks.crossings", "over and under at crossings, where it is known"),
     "tracing": ("benchmarks.tracing", "tracers on drawn scenes with exact truth"),
     "untangling": ("benchmarks.untangling", "the untangling mission on fresh seeds"),
 }
