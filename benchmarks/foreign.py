@@ -15,7 +15,7 @@ from executive.app.compose import cable_vision
 from perception.cable.following import followed_share
 from perception.cable.interfaces import CableVision
 from perception.cable.types import CableScene
-from perception.cable.vision import ClassicCableVision
+from perception.cable.vision import GreyImageVision
 from simulation.cable.knots import KnotName
 
 KNOTS: tuple[KnotName, ...] = ("overhand", "figure_8", "none")
@@ -49,7 +49,7 @@ def run(quick: bool, seed: int) -> Sequence[Row]:
     """Look at 30 views of each renderer (6 when quick), with and without learned parts."""
     wanted = 6 if quick else 30
     rows: list[Row] = []
-    for suffix, vision in (("", cable_vision()), ("_classic", ClassicCableVision())):
+    for suffix, vision in (("", cable_vision()), ("_classic", GreyImageVision())):
         for renderer in RENDERERS:
             numbers = range(seed * wanted, (seed + 1) * wanted)
             views = (draw_view(renderer, KNOTS[number % 3], number) for number in numbers)

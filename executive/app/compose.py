@@ -127,6 +127,6 @@ def cable_vision(hidden_rows: int = 0) -> CableVision:
     Args:
         hidden_rows: Lowest image rows that show the robot instead of the table.
     """
-    from perception.cable.vision import ClassicCableVision, ClassicVisionConfig
+    from perception.cable.vision import GreyImageVision, VisionConfig
 
-    return ClassicCableVision(ClassicVisionConfig(hidden_rows=hidden_rows))
+    return GreyImageVision(VisionConfig(hidden_rows=hidden_rows))

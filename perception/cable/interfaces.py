@@ -42,6 +42,26 @@ class Tracer(Protocol):
 
 
 @runtime_checkable
+class HypothesisTracer(Tracer, Protocol):
+    """A tracer that knows of several ways a cable may go."""
+
+    def hypotheses(
+        self,
+        image: GreyImage,
+        start_px: Points,
+        endpoints: Sequence[Endpoint],
+    ) -> tuple[Trace, ...]:
+        """Return distinct traces, likeliest first; their beliefs add up to 1 at most.
+
+        Args:
+            image: Grey image.
+            start_px: First points; see `Tracer.trace`.
+            endpoints: Ends where a trace may finish.
+        """
+        ...
+
+
+@runtime_checkable
 class CrossingClassifier(Protocol):
     """Says which strand lies on top where traces meet."""
 

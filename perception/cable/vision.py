@@ -1,75 +1,42 @@
-"""The whole of cable perception, from the image alone; learned models only where asked for."""
+"""The whole of cable perception, from the grey image alone."""
 
 import time
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
-from typing import Literal
+from collections.abc import Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
-from perception.cable.belief import knotted_probability
-from perception.cable.bundles import separateness
-from perception.cable.classifiers.continuity import ContinuityClassifier
-from perception.cable.classifiers.edges import EdgeClassifier
+from perception.cable.belief import any_knotted, knot_types, knotted_probability, reading_of
 from perception.cable.coverage import explained_share
-from perception.cable.covered_ends import ends_are_clear
 from perception.cable.crowding import doubt_shared
-from perception.cable.eyes import Eye, ThresholdEye
-from perception.cable.grasp_points import CablePixels, GraspConfig
-from perception.cable.interfaces import CrossingClassifier, Tracer
+from perception.cable.grasp_points import GraspConfig
+from perception.cable.interfaces import HypothesisTracer
 from perception.cable.knots import find_knots
+from perception.cable.parts import (
+    CLASSIFIERS,
+    EYES,
+    TRACERS,
+    ClassifierName,
+    EyeName,
+    TracerName,
+)
+from perception.cable.telling import telling_question
 from perception.cable.tracers.analytic import AnalyticTracer
-from perception.cable.tracers.skeleton import SkeletonTracer
-from perception.cable.types import CableScene, Crossing, Endpoint, Knot, Points, Trace, TraceEnd
-from perception.cable.wholeness import wholeness
+from perception.cable.types import CableScene, Crossing, Endpoint, Knot, Points, Reading, Trace
 from perception.camera import GreyImage
-
-
-# Networks need the extra `learn`; who does not ask for them does without.
-def _learned_eye() -> Eye:
-    from perception.cable.sight.eye import SightEye
-    from perception.models.store import FOLDER
-
-    return SightEye(FOLDER / "sight_v1")
-
-
-def _learned_tracer(_: Eye) -> Tracer:
-    from perception.cable.tracers.both_ways import BothWaysTracer
-    from perception.cable.tracers.learned import LearnedTracer
-    from perception.models.store import FOLDER
-
-    return BothWaysTracer(LearnedTracer(FOLDER / "tracer_v2"))
-
-
-def _learned_classifier() -> CrossingClassifier:
-    from perception.cable.classifiers.learned import LearnedClassifier
-    from perception.models.store import FOLDER
-
-    return LearnedClassifier(FOLDER / "crossing_v1")
-
-
-EYES: dict[str, Callable[[], Eye]] = {"thresholds": ThresholdEye, "learned": _learned_eye}
-TRACERS: dict[str, Callable[[Eye], Tracer]] = {
-    "skeleton": lambda eye: SkeletonTracer(observe=eye.observe),
-    "analytic": lambda eye: AnalyticTracer(observe=eye.observe),
-    "learned": _learned_tracer,
-}
-CLASSIFIERS: dict[str, Callable[[], CrossingClassifier]] = {
-    "edges": EdgeClassifier,
-    "continuity": ContinuityClassifier,
-    "learned": _learned_classifier,
-}
 
 # Tracers finish up to this far from an end.
 REACHED_PX = 20.0
 # A second point this far into the cable tells a tracer which way to go from an end.
 AHEAD_PX = 4.0
+# Other ways to read a cable than the likeliest are weighed down to this belief, so many at most.
+LEAST_READING, MOST_READINGS = 0.02, 4
 
 
 @dataclass(frozen=True, slots=True)
-class ClassicVisionConfig:
-    """Settings of classic cable perception.
+class VisionConfig:
+    """Settings of cable perception.
 
     Attributes:
         eye: What cable and ends are seen with.
@@ -81,20 +48,20 @@ class ClassicVisionConfig:
         grasps: The search for cage and pinch points.
     """
 
-    eye: Literal["thresholds", "learned"] = "thresholds"
-    tracer: Literal["skeleton", "analytic", "learned"] = "skeleton"
-    classifier: Literal["edges", "continuity", "learned"] = "edges"
+    eye: EyeName = "thresholds"
+    tracer: TracerName = "skeleton"
+    classifier: ClassifierName = "edges"
     start_steps: int = 6
     hidden_rows: int = 0
     grasps: GraspConfig = field(default_factory=GraspConfig)
 
 
-class ClassicCableVision:
-    """Implements `CableVision` with mask, skeleton, knot theory and two kinds of evidence."""
+class GreyImageVision:
+    """Implements `CableVision` with an eye, a tracer, a classifier and knot theory."""
 
-    def __init__(self, config: ClassicVisionConfig | None = None) -> None:
-        """Build the steps that the settings name."""
-        self._config = config or ClassicVisionConfig()
+    def __init__(self, config: VisionConfig | None = None) -> None:
+        """Build the parts that the settings name."""
+        self._config = config or VisionConfig()
         self._eye = EYES[self._config.eye]()
         self._tracer = TRACERS[self._config.tracer](self._eye)
         self._classifier = CLASSIFIERS[self._config.classifier]()
@@ -128,22 +95,8 @@ class ClassicCableVision:
     def trace(
         self, image: GreyImage, start_px: Points, endpoints: Sequence[Endpoint]
     ) -> Trace | None:
-        """Follow one cable; see `Tracer.trace`.
-
-        A trace that claims to run from end to end and yet leaves cable out, lies upon itself so
-        long that crossings hide, or crosses a connector, is not believed, however sure the
-        tracer was of each step.
-        """
-        seen = self._seen(image)
-        trace = self._tracer.trace(seen, start_px, endpoints)
-        observation = self._eye.observe(seen)
-        if trace is None or observation is None:
-            return None
-        if trace.end is not TraceEnd.ENDPOINT:
-            return trace
-        belief = wholeness(observation, trace.points_px) * separateness(trace.points_px)
-        belief *= ends_are_clear(trace.points_px)
-        return replace(trace, probability=trace.probability * belief)
+        """Follow one cable; see `Tracer.trace`."""
+        return self._tracer.trace(self._seen(image), start_px, endpoints)
 
     def explained_share(self, image: GreyImage, trace: Trace) -> float:
         """Return the share of cable pixels in view that a trace accounts for, in [0, 1]."""
@@ -157,9 +110,8 @@ class ClassicCableVision:
         self, image: GreyImage, traces: Sequence[Trace], crossings: Sequence[Crossing]
     ) -> tuple[Knot, ...]:
         """Find knots and where to hold them."""
-        seen = self._eye.observe(self._seen(image))
-        pixels = CablePixels(seen.mask.cable, seen.mask.width_px) if seen is not None else None
-        return find_knots(traces, crossings, self._config.grasps, pixels)
+        del image  # Grasp points follow from the traces alone.
+        return find_knots(traces, crossings, self._config.grasps)
 
     def knotted_probability(self, traces: Sequence[Trace], crossings: Sequence[Crossing]) -> float:
         """Carry the beliefs of traces and crossings to P(knotted)."""
@@ -169,37 +121,64 @@ class ClassicCableVision:
         """Do all steps on one image, from a given start or from the ends that are seen."""
         began_s = time.perf_counter()
         endpoints = self.endpoints(image)
-        traces = self._traces(image, start_px, endpoints)
+        cables = self._cables(image, start_px, endpoints)
+        traces = tuple(ways[0] for ways in cables)
         crossings = self.crossings(image, traces)
+        readings = [self._readings(image, k, ways, crossings) for k, ways in enumerate(cables)]
         return CableScene(
             traces=traces,
             endpoints=endpoints,
             crossings=crossings,
             knots=self.knots(image, traces, crossings),
-            knotted_probability=self.knotted_probability(traces, crossings),
+            knotted_probability=any_knotted(readings),
             seconds=time.perf_counter() - began_s,
+            knot_types=knot_types(readings[0]) if readings else (),
+            telling=telling_question(readings[0]) if readings else None,
         )
 
     def _seen(self, image: GreyImage) -> GreyImage:
         """Return the rows that show the table."""
         return image[: len(image) - self._config.hidden_rows]
 
-    def _traces(
+    def _cables(
         self, image: GreyImage, start_px: Points | None, endpoints: Sequence[Endpoint]
-    ) -> tuple[Trace, ...]:
-        """Trace from the start, or from every end that no trace has come to yet."""
+    ) -> list[tuple[Trace, ...]]:
+        """Return the ways to trace each cable, from the start or from every end not come to."""
         if start_px is not None:
-            trace = self.trace(image, start_px, endpoints)
-            return (trace,) if trace is not None else ()
-        traces: list[Trace] = []
+            ways = self._ways(image, start_px, endpoints)
+            return [ways] if ways else []
+        cables: list[tuple[Trace, ...]] = []
         for endpoint in endpoints:
-            if any(_touches(trace, endpoint) for trace in traces):
+            if any(_touches(ways[0], endpoint) for ways in cables):
                 continue
             ahead = endpoint.position_px + AHEAD_PX * endpoint.direction
-            trace = self.trace(image, np.stack([endpoint.position_px, ahead]), endpoints)
-            if trace is not None:
-                traces.append(trace)
-        return tuple(traces)
+            ways = self._ways(image, np.stack([endpoint.position_px, ahead]), endpoints)
+            if ways:
+                cables.append(ways)
+        return cables
+
+    def _ways(
+        self, image: GreyImage, start_px: Points, endpoints: Sequence[Endpoint]
+    ) -> tuple[Trace, ...]:
+        """Return the ways to trace the cable at a start, the likeliest first."""
+        if isinstance(self._tracer, HypothesisTracer):
+            return self._tracer.hypotheses(self._seen(image), start_px, endpoints)
+        trace = self.trace(image, start_px, endpoints)
+        return (trace,) if trace is not None else ()
+
+    def _readings(
+        self,
+        image: GreyImage,
+        number: int,
+        ways: Sequence[Trace],
+        crossings: Sequence[Crossing],
+    ) -> list[Reading]:
+        """Return the readings of one cable, its likeliest way with the crossings that it has."""
+        others = [way for way in ways[1:MOST_READINGS] if way.probability >= LEAST_READING]
+        return [
+            reading_of(ways[0], number, crossings),
+            *(reading_of(way, 0, self.crossings(image, [way])) for way in others),
+        ]
 
 
 def _touches(trace: Trace, endpoint: Endpoint) -> bool:

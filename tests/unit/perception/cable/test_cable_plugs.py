@@ -10,7 +10,7 @@ from perception.cable.plug_ends import with_plugs
 from perception.cable.plugs import Plug, find_plugs
 from perception.cable.polyline import arc_lengths
 from perception.cable.types import Trace, TraceEnd
-from perception.cable.vision import ClassicCableVision
+from perception.cable.vision import GreyImageVision
 from perception.cable.wholeness import wholeness
 
 WIDTH_PX = 7.0
@@ -55,7 +55,7 @@ def touching(request: pytest.FixtureRequest) -> tuple[Drawing, np.ndarray]:
 
 def test_both_connectors_are_ends(touching):
     drawing, image = touching
-    ends = ClassicCableVision().endpoints(image)
+    ends = GreyImageVision().endpoints(image)
     assert len(ends) == 2
     for at, inner in ((0, 6), (-1, -7)):
         place = drawing.points_px[at]
@@ -67,7 +67,7 @@ def test_both_connectors_are_ends(touching):
 
 def test_traces_pass_a_connector_and_end_at_it(touching):
     drawing, image = touching
-    vision = ClassicCableVision()
+    vision = GreyImageVision()
     (trace,) = vision.scene(image).traces
     assert trace.end is TraceEnd.ENDPOINT
     truth = arc_lengths(drawing.points_px)[-1]
@@ -90,7 +90,7 @@ def test_two_strands_side_by_side_are_no_connector():
 
 def test_an_empty_table_has_no_ends():
     image = np.random.default_rng(0).normal(60.0, 4.0, SHAPE).astype(np.uint8)
-    assert ClassicCableVision().endpoints(image) == ()
+    assert GreyImageVision().endpoints(image) == ()
 
 
 def test_belief_in_a_trace_falls_with_the_cable_that_it_leaves_out(touching):
@@ -109,7 +109,7 @@ def test_half_a_cable_never_gives_a_verdict(touching):
     half = drawing.points_px[: len(drawing.points_px) // 2]
     sure = wholeness(observe(image), half)
     trace = Trace(half, TraceEnd.ENDPOINT, sure)
-    assert ClassicCableVision().knotted_probability((trace,), ()) == pytest.approx(0.5)
+    assert GreyImageVision().knotted_probability((trace,), ()) == pytest.approx(0.5)
 
 
 def test_a_cable_along_the_border_of_the_image_is_no_error():

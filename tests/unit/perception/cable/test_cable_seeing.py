@@ -15,7 +15,7 @@ from perception.cable.topology import curve_crossings
 from perception.cable.tracers.analytic import AnalyticTracer
 from perception.cable.tracers.skeleton import SkeletonTracer
 from perception.cable.types import Trace, TraceEnd
-from perception.cable.vision import ClassicCableVision, ClassicVisionConfig
+from perception.cable.vision import GreyImageVision, VisionConfig
 
 WANDER_SEEDS = (1, 4, 5, 6, 8, 9)
 
@@ -82,7 +82,7 @@ def test_an_empty_table_shows_no_cable():
     noise = np.random.default_rng(0).normal(60.0, 5.0, (773, 1032))
     image = np.clip(noise, 0, 255).astype(np.uint8)
     assert find_mask(image) is None
-    scene = ClassicCableVision().scene(image)
+    scene = GreyImageVision().scene(image)
     assert (scene.traces, scene.endpoints, scene.crossings, scene.knots) == ((), (), (), ())
     assert scene.knotted_probability == 0.5
 
@@ -104,7 +104,7 @@ def test_arms_in_the_lowest_rows_are_clutter(knotted):
 def test_light_and_width_do_not_matter(light, width_px):
     drawing = figure_8()
     image = image_of(drawing, width_px=width_px, noise=3.0, **light)
-    scene = ClassicCableVision().scene(image)
+    scene = GreyImageVision().scene(image)
     assert len(scene.endpoints) == 2
     assert len(scene.crossings) == len(over_of(drawing))
     assert scene.knotted_probability > 0.8
@@ -112,7 +112,7 @@ def test_light_and_width_do_not_matter(light, width_px):
 
 def test_ends_lie_where_the_cable_ends_and_point_into_it(knotted):
     drawing, image = knotted
-    ends = ClassicCableVision().endpoints(image)
+    ends = GreyImageVision().endpoints(image)
     assert len(ends) == 2
     for truth, inner in ((0, 8), (-1, -9)):
         place = drawing.points_px[truth]
@@ -126,7 +126,7 @@ def test_ends_lie_where_the_cable_ends_and_point_into_it(knotted):
 def test_cable_that_leaves_the_view_has_no_end_there():
     line = np.stack([np.linspace(-30.0, 500.0, 200), 300.0 + 40.0 * np.sin(np.arange(200) / 30)], 1)
     image = image_of(Drawing(np.c_[line, np.zeros(200)]))
-    vision = ClassicCableVision()
+    vision = GreyImageVision()
     (end,) = vision.endpoints(image)
     assert end.position_px[0] > 400.0
     trace = vision.trace(image, end.position_px[None], (end,))
@@ -135,7 +135,7 @@ def test_cable_that_leaves_the_view_has_no_end_there():
 
 def test_start_points_are_six_clear_steps(knotted):
     _, image = knotted
-    vision = ClassicCableVision()
+    vision = GreyImageVision()
     for end in vision.endpoints(image):
         points = vision.start_points(image, end)
         assert points.shape == (7, 2)
@@ -152,7 +152,7 @@ def test_there_is_no_start_beside_the_cable(knotted):
 
 
 def test_the_default_tracer_follows_every_wandering(wanderings):
-    vision = ClassicCableVision()
+    vision = GreyImageVision()
     right = 0
     for drawing, image in wanderings:
         scene = vision.scene(image)
@@ -165,7 +165,7 @@ def test_the_default_tracer_follows_every_wandering(wanderings):
 
 def test_the_analytic_tracer_follows_an_easy_knot(knotted):
     drawing, image = knotted
-    vision = ClassicCableVision(ClassicVisionConfig(tracer="analytic"))
+    vision = GreyImageVision(VisionConfig(tracer="analytic"))
     (trace,) = vision.scene(image).traces
     assert trace.end is TraceEnd.ENDPOINT
     assert farthest_px(trace, drawing) < 25.0
@@ -173,7 +173,7 @@ def test_the_analytic_tracer_follows_an_easy_knot(knotted):
 
 @pytest.mark.parametrize("classifier", ["edges", "continuity"])
 def test_classifiers_read_every_crossing(classifier, wanderings):
-    vision = ClassicCableVision(ClassicVisionConfig(classifier=classifier))
+    vision = GreyImageVision(VisionConfig(classifier=classifier))
     right = total = 0
     for drawing, image in wanderings:
         trace = Trace(drawing.points_px, TraceEnd.ENDPOINT, 1.0)
@@ -207,7 +207,7 @@ def test_exchanging_the_strands_changes_the_sign(kind, knotted):
 
 def test_walking_the_other_way_meets_the_same_crossings(knotted):
     drawing, image = knotted
-    vision = ClassicCableVision()
+    vision = GreyImageVision()
     there, back = (
         vision.crossings(image, (Trace(points, TraceEnd.ENDPOINT, 1.0),))
         for points in (drawing.points_px, drawing.points_px[::-1])
@@ -226,7 +226,7 @@ def test_walking_the_other_way_meets_the_same_crossings(knotted):
 )
 def test_turned_and_mirrored_images_are_read_alike(view):
     image = image_of(figure_8())
-    vision = ClassicCableVision()
+    vision = GreyImageVision()
     plain, seen = vision.scene(image), vision.scene(np.ascontiguousarray(view(image)))
     assert len(seen.crossings) == len(plain.crossings) == 5
     assert len(seen.endpoints) == len(plain.endpoints) == 2
@@ -236,7 +236,7 @@ def test_turned_and_mirrored_images_are_read_alike(view):
 
 @pytest.mark.parametrize("tie", [overhand, figure_8])
 def test_knots_are_told_from_the_same_curve_laid_down(tie):
-    vision = ClassicCableVision()
+    vision = GreyImageVision()
     knot = vision.scene(image_of(tie()))
     assert knot.knotted_probability > 0.95
     assert len(knot.knots) == 1
@@ -247,7 +247,7 @@ def test_knots_are_told_from_the_same_curve_laid_down(tie):
 
 def test_grasp_points_lie_on_lonely_cable(knotted):
     drawing, image = knotted
-    scene = ClassicCableVision().scene(image)
+    scene = GreyImageVision().scene(image)
     (knot,) = scene.knots
     assert np.linalg.norm(knot.cage_px - knot.pinch_px) >= 60.0
     for place, way in (
@@ -261,7 +261,7 @@ def test_grasp_points_lie_on_lonely_cable(knotted):
 
 def test_the_same_image_gives_the_same_scene(knotted):
     _, image = knotted
-    first, second = (ClassicCableVision().scene(image.copy()) for _ in range(2))
+    first, second = (GreyImageVision().scene(image.copy()) for _ in range(2))
     assert np.array_equal(first.traces[0].points_px, second.traces[0].points_px)
     assert first.knotted_probability == second.knotted_probability
 
@@ -269,7 +269,7 @@ def test_the_same_image_gives_the_same_scene(knotted):
 def test_a_given_start_is_where_the_trace_begins(knotted):
     drawing, image = knotted
     start = drawing.points_px[30:36]
-    scene = ClassicCableVision().scene(image, start)
+    scene = GreyImageVision().scene(image, start)
     (trace,) = scene.traces
     assert np.linalg.norm(trace.points_px[0] - start[0]) < 4.0
     assert (trace.points_px[5] - trace.points_px[0]) @ (start[-1] - start[0]) > 0.0
@@ -278,7 +278,7 @@ def test_a_given_start_is_where_the_trace_begins(knotted):
 def test_drawing_shows_the_scene_and_leaves_the_image_alone(knotted):
     _, image = knotted
     before = image.copy()
-    scene = ClassicCableVision().scene(image)
+    scene = GreyImageVision().scene(image)
     picture = draw_scene(image, scene)
     assert picture.shape == (*image.shape, 3)
     assert picture.dtype == np.uint8
@@ -288,7 +288,7 @@ def test_drawing_shows_the_scene_and_leaves_the_image_alone(knotted):
 
 
 def test_implementations_keep_the_contracts():
-    assert isinstance(ClassicCableVision(), CableVision)
+    assert isinstance(GreyImageVision(), CableVision)
     for tracer in (SkeletonTracer(), AnalyticTracer()):
         assert isinstance(tracer, Tracer)
     for classifier in (EdgeClassifier(), ContinuityClassifier()):

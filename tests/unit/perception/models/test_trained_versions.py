@@ -11,7 +11,7 @@ from perception.cable.classifiers.learned import LearnedClassifier  # noqa: E402
 from perception.cable.interfaces import CrossingClassifier, Tracer  # noqa: E402
 from perception.cable.tracers.learned import LearnedTracer  # noqa: E402
 from perception.cable.types import Endpoint, Trace, TraceEnd  # noqa: E402
-from perception.cable.vision import ClassicCableVision, ClassicVisionConfig  # noqa: E402
+from perception.cable.vision import GreyImageVision, VisionConfig  # noqa: E402
 from perception.models.store import FOLDER, load_network, read_config  # noqa: E402
 from perception.training.scenes import SceneConfig, make_scene  # noqa: E402
 
@@ -78,7 +78,7 @@ def test_the_tracer_follows_a_loop(version, bright):
 
 def test_cable_vision_can_be_asked_for_the_learned_tracer():
     image, line = _wave(bright=True)
-    vision = ClassicCableVision(ClassicVisionConfig(tracer="learned"))
+    vision = GreyImageVision(VisionConfig(tracer="learned"))
     trace = vision.trace(image, line[:25:4], [])
     assert trace is not None
     gaps = np.linalg.norm(line[::5, None] - _dense(trace.points_px)[None], axis=2).min(axis=1)

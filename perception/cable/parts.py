@@ -1,0 +1,54 @@
+"""The parts that cable vision is put together from, by name."""
+
+from collections.abc import Callable
+from typing import Literal
+
+from perception.cable.classifiers.continuity import ContinuityClassifier
+from perception.cable.classifiers.edges import EdgeClassifier
+from perception.cable.eyes import Eye, ThresholdEye
+from perception.cable.interfaces import CrossingClassifier, Tracer
+from perception.cable.tracers.accountable import AccountableTracer
+from perception.cable.tracers.analytic import AnalyticTracer
+from perception.cable.tracers.skeleton import SkeletonTracer
+
+EyeName = Literal["thresholds", "learned"]
+TracerName = Literal["skeleton", "analytic", "learned"]
+ClassifierName = Literal["edges", "continuity", "learned"]
+
+SIGHT, TRACER, CROSSING = "sight_v1", "tracer_v2", "crossing_v1"
+
+
+# Networks need the extra `learn`; who does not ask for them does without.
+def _learned_eye() -> Eye:
+    from perception.cable.sight.eye import SightEye
+    from perception.models.store import FOLDER
+
+    return SightEye(FOLDER / SIGHT)
+
+
+def _learned_tracer(eye: Eye) -> Tracer:
+    from perception.cable.tracers.both_ways import BothWaysTracer
+    from perception.cable.tracers.learned import LearnedTracer
+    from perception.models.store import FOLDER
+
+    return AccountableTracer(BothWaysTracer(LearnedTracer(FOLDER / TRACER)), eye.observe)
+
+
+def _learned_classifier() -> CrossingClassifier:
+    from perception.cable.classifiers.learned import LearnedClassifier
+    from perception.models.store import FOLDER
+
+    return LearnedClassifier(FOLDER / CROSSING)
+
+
+EYES: dict[EyeName, Callable[[], Eye]] = {"thresholds": ThresholdEye, "learned": _learned_eye}
+TRACERS: dict[TracerName, Callable[[Eye], Tracer]] = {
+    "skeleton": lambda eye: AccountableTracer(SkeletonTracer(observe=eye.observe), eye.observe),
+    "analytic": lambda eye: AccountableTracer(AnalyticTracer(observe=eye.observe), eye.observe),
+    "learned": _learned_tracer,
+}
+CLASSIFIERS: dict[ClassifierName, Callable[[], CrossingClassifier]] = {
+    "edges": EdgeClassifier,
+    "continuity": ContinuityClassifier,
+    "learned": _learned_classifier,
+}
