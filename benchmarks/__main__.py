@@ -23,6 +23,7 @@ BENCHMARKS = {
     ),
     "sight": ("benchmarks.sight", "the detector beside the classic mask and ends"),
     "crossings": ("benchmarks.crossings", "over and under at crossings, where it is known"),
+    "knots": ("benchmarks.knots", "first knots found: loose, dense and fake, by four systems"),
     "tracing": ("benchmarks.tracing", "tracers on drawn scenes with exact truth"),
     "untangling": ("benchmarks.untangling", "the untangling mission on fresh seeds"),
 }
