@@ -27,8 +27,12 @@ def render(
     width_px: float,
     size_px: tuple[int, int],
     look: Look,
-) -> tuple[GreyImage, tuple[Connector, ...]]:
-    """Return an image of strands (x, y, z) [px] on a table, and the connectors that it shows."""
+    shots: int = 1,
+) -> tuple[tuple[GreyImage, ...], tuple[Connector, ...]]:
+    """Return images of strands (x, y, z) [px] on a table, and the connectors that they show.
+
+    All `shots` show the same, each in light and with noise of its own.
+    """
     scale = 2 if look.lens.smooth and width_px < THIN_PX else 1
     size, width = (size_px[0] * scale, size_px[1] * scale), width_px * scale
     picture: Picture = draw_table(rng, size_px, look.table, width_px)
@@ -43,8 +47,11 @@ def render(
     if scale > 1:
         small = cv2.resize(picture, size_px[::-1], interpolation=cv2.INTER_AREA)
         picture = small.astype(np.float32)
-    lit = light_up(rng, picture, look.light)
-    return photograph(rng, lit, width_px, look.lens), tuple(connectors)
+    images = tuple(
+        photograph(rng, light_up(rng, picture, look.light), width_px, look.lens)
+        for _ in range(shots)
+    )
+    return images, tuple(connectors)
 
 
 def _connectors(

@@ -118,7 +118,19 @@ def lay_scene(
     config: SceneConfig,
     first_over: FirstOver | None = None,
 ) -> Scene:
-    """Return a scene of cables along given lines.
+    """Return a scene of cables along given lines; arguments as for `lay_scenes`."""
+    return lay_scenes(rng, lines, config, first_over, shots=1)[0]
+
+
+def lay_scenes(
+    rng: np.random.Generator,
+    lines: Sequence[Floats],
+    config: SceneConfig,
+    first_over: FirstOver | None = None,
+    *,
+    shots: int,
+) -> tuple[Scene, ...]:
+    """Return scenes of the very same cables along given lines, alike but for light and noise.
 
     Args:
         rng: Source of all randomness.
@@ -126,6 +138,7 @@ def lay_scene(
             of the config's extent; shape (N, 2) each.
         config: What the scene looks like.
         first_over: Says where over and under is prescribed.
+        shots: How many images to take.
     """
     width_px = float(np.exp(rng.uniform(np.log(config.narrowest_px), np.log(config.widest_px))))
     side_px = int(config.extent * width_px)
@@ -138,14 +151,14 @@ def lay_scene(
         np.column_stack([part[:, :2] * width_px + origin_px, part[:, 2] * width_px])
         for part in parts
     ]
-    image, connectors = render(rng, strands, width_px, size_px, look)
+    images, connectors = render(rng, strands, width_px, size_px, look, shots)
     cables = tuple(
         SceneCable(strand[:, :2], part[:, 2], own.width * width_px)
         for strand, part, own in zip(strands, parts, look.cables, strict=True)
     )
     crossings = _true_crossings(nodes, cable)
     seen = [each for each in crossings if not _covered(each, cables, connectors)]
-    return Scene(image, width_px, cables, tuple(seen), connectors)
+    return tuple(Scene(image, width_px, cables, tuple(seen), connectors) for image in images)
 
 
 def _covered(
