@@ -117,12 +117,20 @@ class HeldStrand:
 
     def clearance_px(self, at_px: float, config: GraspConfig) -> float:
         """Return the distance to the nearest other strand, reduced near crossings."""
-        here = self.point(at_px)
-        far = np.abs(self.arcs - at_px) > config.own_px
-        near_px = float(np.linalg.norm(self.line[far] - here, axis=1).min(initial=1e3))
+        return float(self.clearances_px(np.array([at_px]), config)[0])
+
+    def clearances_px(self, at_px: Points, config: GraspConfig) -> Points:
+        """Return that distance at many places of the strand, shape (K,)."""
+        here = point_at(self.line, self.arcs, at_px)
+        gaps_px = np.linalg.norm(self.line[None] - here[:, None], axis=2)
+        gaps_px[np.abs(self.arcs[None] - at_px[:, None]) <= config.own_px] = np.inf
+        near_px = gaps_px.min(axis=1)
         if len(self.others):
-            near_px = min(near_px, float(np.linalg.norm(self.others - here, axis=1).min()))
-        return min(near_px, self.to_crossing_px(at_px) * config.room_px / config.crossing_px)
+            aside_px = np.linalg.norm(self.others[None] - here[:, None], axis=2)
+            near_px = np.minimum(near_px, aside_px.min(axis=1))
+        along_px = np.abs(self.crossings_px[None] - at_px[:, None]).min(axis=1, initial=np.inf)
+        clearances: Points = np.minimum(near_px, along_px * config.room_px / config.crossing_px)
+        return clearances
 
     def to_crossing_px(self, at_px: float) -> float:
         """Return how far along the strand the nearest crossing is."""

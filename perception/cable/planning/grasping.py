@@ -55,19 +55,26 @@ class Places:
         self._config = config
         count = max(int(arcs[-1] / STEP_PX), 2)
         self._arcs = (np.arange(count) + 0.5) / count
-        self._rooms = np.array([self._room(arc) for arc in self._arcs])
+        self._rooms = self._measured(self._arcs)
+        self._best: dict[Hold, tuple[float, float]] = {}
 
-    def _room(self, arc: float) -> float:
-        clearance_px = self.held.clearance_px(arc * self.held.length_px, self._config)
-        return min(clearance_px / self._config.room_px, 1.0)
+    def _measured(self, arcs: Points) -> Points:
+        clearances_px = self.held.clearances_px(arcs * self.held.length_px, self._config)
+        rooms: Points = np.minimum(clearances_px / self._config.room_px, 1.0)
+        return rooms
 
     def best(self, hold: Hold) -> tuple[float, float]:
         """Return the arc position where a hand should take the cable, and the room there."""
+        if hold not in self._best:
+            self._best[hold] = self._searched(hold)
+        return self._best[hold]
+
+    def _searched(self, hold: Hold) -> tuple[float, float]:
         low, high = np.searchsorted(self._arcs, hold.interval)
-        if low == high:
-            middle = sum(hold.interval) / 2.0
-            return middle, self._room(middle)
         arcs, rooms = self._arcs[low:high], self._rooms[low:high]
+        if low == high:
+            arcs = np.array([sum(hold.interval) / 2.0])
+            rooms = self._measured(arcs)
         far_px = np.abs(arcs - hold.near) * self.held.length_px
         k = int(np.argmax(rooms - NEARNESS * far_px / self._config.room_px))
         return float(arcs[k]), float(rooms[k])

@@ -10,9 +10,8 @@ only be drawn out sideways from under the others: its new way crosses nothing.
 """
 
 from collections import deque
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-
-import numpy as np
 
 from perception.cable.planning.open_diagram import Joined, OpenDiagram, coded
 
@@ -70,27 +69,35 @@ class Faces:
     def __init__(self, diagram: OpenDiagram) -> None:
         """Find the faces once; the diagram must have crossings."""
         self._diagram = diagram
-        self._left, self._right, self._count = diagram.faces()
+        self._left, self._right, _ = diagram.faces()
         self._shortest_joint = _Walls(diagram, diagram.joined())
 
     def way(self, run: Stretch) -> list[Door] | None:
-        """Return what a run inside the curve crosses when it is laid along its shortest way.
+        """Return what a run crosses when it is laid along its shortest way.
 
         Returns:
             The doors in order; None where a run below has to cross others, or one on top shuts
             an end in.
         """
         if self._diagram.over[run.first]:
-            return self._way_over(run)
-        root = _merged(self._left, self._right, self._count, run.edges)
-        source, target = self._left[run.first], self._left[run.last + 1]
-        return [] if root[source] == root[target] else None
+            walls = self._beside(run)
+            return walls.way(run) if walls else None
+        return [] if self.crosses_nothing(run) else None
 
-    def _way_over(self, run: Stretch) -> list[Door] | None:
+    def crosses_nothing(self, run: Stretch) -> bool:
+        """Say whether a run can be laid so that it crosses nothing."""
+        if self._diagram.over[run.first]:
+            walls = self._beside(run)
+            return walls is not None and walls.crosses_nothing(run)
+        root = _merged(self._left, self._right, run.edges)
+        return root(self._left[run.first]) == root(self._left[run.last + 1])
+
+    def _beside(self, run: Stretch) -> "_Walls | None":
+        """Return the faces with a joint beside a run; None where there can be none."""
         if not self._shortest_joint.cuts(run):
-            return self._shortest_joint.way(run)
+            return self._shortest_joint
         joined = self._diagram.joined_beside(run.edges)
-        return None if joined is None else _Walls(self._diagram, joined).way(run)
+        return None if joined is None else _Walls(self._diagram, joined)
 
 
 class _Walls:
@@ -98,8 +105,9 @@ class _Walls:
 
     def __init__(self, diagram: OpenDiagram, joined: Joined) -> None:
         self._places = joined.places
-        self._left, self._right, self._count = joined.diagram.faces()
+        self._left, self._right, _ = joined.diagram.faces()
         own = len(joined.diagram.visits) - (len(joined.diagram) - len(diagram))
+        self._own = own
         self._parts = self._parts_of_edges(own)
 
     def _parts_of_edges(self, own: int) -> list[tuple[int, int, int]]:
@@ -110,34 +118,49 @@ class _Walls:
             edge, part = (edge + 1, 0) if place in real else (edge, part + 1)
         return [*parts, (own - 1, edge, part)]
 
-    def _lifted(self, run: Stretch) -> range:
-        """Return the closed edges from the visit before a run to the one after it."""
-        return range(self._places[run.first - 1], self._places[run.last + 1])
+    def _lifted(self, run: Stretch) -> list[int]:
+        """Return the closed edges from the visit before a run, or the end, to that after it."""
+        first = self._places[run.first - 1] if run.first else -1
+        behind = run.last + 1 < len(self._places)
+        last = self._places[run.last + 1] if behind else self._own
+        return [edge % len(self._left) for edge in range(first, last)]
 
     def cuts(self, run: Stretch) -> bool:
         """Say whether the joint crosses a run."""
         return len(self._lifted(run)) != len(run.edges)
 
+    def crosses_nothing(self, run: Stretch) -> bool:
+        """Say whether a run on top can be laid so that it crosses nothing."""
+        lifted = self._lifted(run)
+        root = _merged(self._left, self._right, lifted)
+        return root(self._left[lifted[0]]) == root(self._left[lifted[-1]])
+
     def way(self, run: Stretch) -> list[Door]:
         """Return what a run on top crosses along its shortest way beside the joint."""
         lifted = self._lifted(run)
-        root = _merged(self._left, self._right, self._count, lifted)
-        source, target = root[self._left[lifted[0]]], root[self._left[lifted[-1]]]
-        doors: dict[int, list[Door]] = {face: [] for face in root}
+        root = _merged(self._left, self._right, lifted)
+        doors: dict[int, list[Door]] = {}
         for closed_edge, edge, part in self._parts:
-            left, right = root[self._left[closed_edge]], root[self._right[closed_edge]]
+            left, right = root(self._left[closed_edge]), root(self._right[closed_edge])
             if left != right and closed_edge not in lifted:
-                doors[left].append(Door(right, edge, part, from_left=True))
-                doors[right].append(Door(left, edge, part, from_left=False))
-        return _shortest(doors, source, target)
+                doors.setdefault(left, []).append(Door(right, edge, part, from_left=True))
+                doors.setdefault(right, []).append(Door(left, edge, part, from_left=False))
+        return _shortest(doors, root(self._left[lifted[0]]), root(self._left[lifted[-1]]))
 
 
-def _merged(left: list[int], right: list[int], count: int, lifted: range) -> list[int]:
-    """Return for each face which one it is part of when edges are lifted."""
-    root = list(range(count))
+def _merged(left: list[int], right: list[int], lifted: Sequence[int]) -> Callable[[int], int]:
+    """Return what says of each face which one it is part of when edges are lifted."""
+    part_of: dict[int, int] = {}
+
+    def root(face: int) -> int:
+        while face in part_of:
+            face = part_of[face]
+        return face
+
     for edge in lifted:
-        gone, kept = root[left[edge]], root[right[edge]]
-        root = [kept if face == gone else face for face in root]
+        gone, kept = root(left[edge]), root(right[edge])
+        if gone != kept:
+            part_of[gone] = kept
     return root
 
 
@@ -162,7 +185,9 @@ def _shortest(doors: dict[int, list[Door]], source: int, target: int) -> list[Do
 def laid(diagram: OpenDiagram, run: Stretch, way: list[Door]) -> OpenDiagram:
     """Return the diagram with the crossings of a run replaced by those along a way."""
     on_top = diagram.over[run.first]
-    lifted = set(diagram.visits[run.first : run.last + 1])
+    lifted = frozenset(diagram.visits[run.first : run.last + 1])
+    if not way:
+        return diagram.without(lifted)
     signs = dict(enumerate(diagram.signs))
     begin, end = diagram.span(run.first)[0], diagram.span(run.last + 1)[1]
     met = [
@@ -170,10 +195,11 @@ def laid(diagram: OpenDiagram, run: Stretch, way: list[Door]) -> OpenDiagram:
         for arc, visit, over in zip(diagram.arcs, diagram.visits, diagram.over, strict=True)
         if visit not in lifted
     ]
-    spread = np.linspace(begin, end, len(way) + 2)[1:-1]
-    for number, (door, arc) in enumerate(zip(way, spread, strict=True), start=len(diagram)):
+    step = (end - begin) / (len(way) + 1)
+    for k, door in enumerate(way, start=1):
+        number = len(diagram) + k - 1
         signs[number] = 1 if door.from_left == on_top else -1
-        met.append((float(arc), number, on_top))
+        met.append((begin + k * step, number, on_top))
         met.append((_arc_on(diagram, door, way), number, not on_top))
     met.sort()
     return coded([m[1] for m in met], [m[2] for m in met], signs, [m[0] for m in met])

@@ -208,24 +208,24 @@ def _turned(move: Move) -> Move:
 
 def _inner_moves(diagram: OpenDiagram) -> Iterator[Move]:
     """Return moves of strands between the ends, each run as a whole, and twists and bights."""
-    faces, last = Faces(diagram), len(diagram.visits) - 2
+    faces = Faces(diagram)
     for longest in stretches(diagram):
-        inside = Stretch(max(longest.first, 1), min(longest.last, last))
-        runs = {inside} | {
+        runs = {longest} | {
             Stretch(first, first + more)
             for more in (0, 1)
-            for first in range(inside.first, inside.last + 1 - more)
+            for first in range(longest.first, longest.last + 1 - more)
         }
         for run in sorted(runs, key=lambda run: (run.first, run.last)):
-            if run.length > 0:
-                yield from _laid_elsewhere(diagram, faces, run, inside)
+            yield from _laid_elsewhere(diagram, faces, run, longest)
 
 
 def _laid_elsewhere(
     diagram: OpenDiagram, faces: Faces, run: Stretch, longest: Stretch
 ) -> Iterator[Move]:
+    if run != longest and not faces.crosses_nothing(run):
+        return
     way = faces.way(run)
-    if way is None or (way and run != longest):
+    if way is None:
         return
     on_top = diagram.over[run.first]
     interval = (diagram.span(run.first)[0], diagram.span(run.last + 1)[1])

@@ -31,6 +31,9 @@ KIND_COSTS: Mapping[MoveKind, float] = MappingProxyType(
     }
 )
 
+# Where the cheapest plan is too far to search for, crossings that are left weigh so much more.
+HASTE = 10.0
+
 
 @dataclass(frozen=True, slots=True)
 class MoveCosts:
@@ -59,7 +62,8 @@ class PlannerConfig:
         costs: What it costs.
         grasps: How much room hands need.
         least_room: The share of that room below which fingers cannot take hold at all.
-        states: How many diagrams are looked at before giving up.
+        states: How many diagrams are looked at for the cheapest plan, and if that was not
+            enough, as many again for any good one.
     """
 
     goal: Literal["uncrossed", "unknotted"] = "uncrossed"
@@ -187,6 +191,9 @@ class _Planner:
             return Plan(self._seen, (), 0, PlanFailure.ENDS_FIXED)
         problem = Problem(self._priced, self._left, self._is_goal)
         found = cheapest(self._seen, problem, self._config.states)
+        if found.moves is None and not found.exhausted:
+            hasty = replace(problem, left=lambda diagram: HASTE * self._bound(diagram))
+            found = cheapest(self._seen, hasty, self._config.states)
         if found.moves is None:
             return Plan(self._seen, (), found.states, self._why_not(found))
         return Plan(self._seen, tuple(map(self._step, found.moves)), found.states, None)
@@ -205,8 +212,12 @@ class _Planner:
         return classify_diagram(diagram.closed()).state is Knottedness.UNKNOT
 
     def _left(self, diagram: OpenDiagram) -> float:
-        """Return less than what is still to be paid: every crossing left is a visit undone."""
-        if self._config.goal != "uncrossed" or not diagram.visits:
+        """Return no more than what is still to be paid; to unknot may take a single move."""
+        return self._bound(diagram) if self._config.goal == "uncrossed" else 0.0
+
+    def _bound(self, diagram: OpenDiagram) -> float:
+        """Return the least that it costs to undo all crossings: each of them is passed once."""
+        if not diagram.visits:
             return 0.0
         return min(KIND_COSTS.values()) + self._config.costs.per_visit * len(diagram)
 
