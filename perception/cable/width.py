@@ -16,10 +16,8 @@ REACH_PX, TABLE_PX = 20.0, 12.0
 FINE_PX = 0.25
 # The line may lie so far off the cable's middle.
 ASIDE_PX = 2.0
-# Cables are round and darker at their sides: there the profile has sunk to this share.
-BORDER = 0.28
-# A mask this much wider than the profile is of something else.
-WIDER = 0.75
+# At a cable's border, blurred or not, the profile has sunk to this share.
+BORDER = 0.5
 # A profile must rise above its own noise by this factor, and by so many grey values.
 CLEAR, LEAST = 4.0, 8.0
 # Lines are looked at in pieces of this length; a typical width takes at least so many.
@@ -49,19 +47,22 @@ def cable_width(image: GreyImage, start_px: Points) -> float | None:
     """Return the width of the cable that starts at some points; None where no cable is seen.
 
     The mask knows the cable's width from all of its length, unless it took something else for
-    cable; the profile at the start is of this cable, unless others lie beside it.
+    cable; the profile at the start is of this cable, unless others lie beside it. Each is wrong
+    where the other is not, so their geometric mean is nearer than either.
 
     Args:
         image: Grey image.
         start_px: First points of the cable, in order, shape (N, 2), N >= 1.
     """
-    mask = mask_under(image, start_px)
+    return width_with(mask_under(image, start_px), image, start_px)
+
+
+def width_with(mask: CableMask | None, image: GreyImage, start_px: Points) -> float | None:
+    """Return the same as `cable_width`, given the mask that holds the start."""
     across = width_across(image, start_px) if len(start_px) > 1 else None
     if mask is None:
         return across
-    if across is None or across > WIDER * mask.width_px:
-        return mask.width_px
-    return across
+    return mask.width_px if across is None else float(np.sqrt(across * mask.width_px))
 
 
 def width_under(image: GreyImage, lines_px: Sequence[Points]) -> float:
@@ -103,7 +104,7 @@ def width_across(image: GreyImage, line_px: Points) -> float | None:
     profiles = _profiles(image, line_px)
     offsets = np.linspace(-REACH_PX, REACH_PX, profiles.shape[1])
     far, near = np.abs(offsets) > TABLE_PX, np.abs(offsets) <= ASIDE_PX
-    profile = profiles.mean(axis=0) - float(np.median(profiles[:, far]))
+    profile = np.median(profiles, axis=0) - float(np.median(profiles[:, far]))
     noise = float(np.median(np.abs(profile[far])))
     middle = float(np.median(profile[near]))
     if abs(middle) < max(CLEAR * noise, LEAST):

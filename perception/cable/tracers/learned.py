@@ -10,19 +10,22 @@ from pathlib import Path as FilePath
 
 import numpy as np
 
-from perception.cable.polyline import arc_lengths, point_at
-from perception.cable.tracers.paths import Ends, Path
+from perception.cable.tracers.paths import Ends
 from perception.cable.tracers.search import Search, SearchConfig, run_searches
+from perception.cable.tracers.starts import first_paths
 from perception.cable.tracers.steps import StepModel
 from perception.cable.types import Endpoint, Points, Trace, TraceEnd
 from perception.cable.width import cable_width
 from perception.camera import GreyImage
-from perception.models.frames import ScaledImage, scale_image
-from perception.models.tracer_crop import STEP, WIDTH
+from perception.models.frames import scale_image
+from perception.models.tracer_crop import WIDTH
+
+# An end of a cable is not where the same cable's trace finishes within so many widths.
+OWN_END_WIDTHS = 3.0
 
 
 class LearnedTracer:
-    """Follows one cable with a trained network.
+    """Follows one cable with a trained network, one way.
 
     Args:
         folder: A trained version, see `perception.models.store`.
@@ -51,14 +54,10 @@ class LearnedTracer:
         far = [
             end
             for end in endpoints
-            if np.linalg.norm(end.position_px - start_px[0]) > 3.0 * width_px
+            if np.linalg.norm(end.position_px - start_px[0]) > OWN_END_WIDTHS * width_px
         ]
-        ends = Ends(
-            scaled.into(np.array([end.position_px for end in far]).reshape(-1, 2)),
-            np.array([end.direction for end in far]).reshape(-1, 2),
-        )
-        starts = self._starts(scaled.into(start_px), endpoints, scaled)
-        search = Search(starts, ends, self._config)
+        starts = first_paths(start_px, endpoints, scaled)
+        search = Search(starts, Ends.of(far, scaled), self._config)
         run_searches(self._model, scaled, [search], self._config.most_looks)
         found = search.found()
         # Ways that met more than once are counted more than once.
@@ -72,32 +71,3 @@ class LearnedTracer:
             )
             for path, belief in zip(found, beliefs, strict=True)
         )
-
-    def _starts(
-        self, points: Points, endpoints: Sequence[Endpoint], scaled: ScaledImage
-    ) -> list[Path]:
-        """Return first paths: one, or one for each direction where none is known."""
-        if len(points) > 1:
-            return [_fresh(_even(points))]
-        known = [
-            end.direction
-            for end in endpoints
-            if np.linalg.norm(scaled.into(end.position_px) - points[0]) < STEP
-        ]
-        turns = np.linspace(0.0, 2.0 * np.pi, 16, endpoint=False)
-        ways = known[:1] or list(np.column_stack([np.cos(turns), np.sin(turns)]))
-        return [_fresh(np.vstack([points[0] - STEP * way, points[0]])) for way in ways]
-
-
-def _fresh(points: Points) -> Path:
-    """Return a path before any choice."""
-    return Path(points, np.zeros(len(points)))
-
-
-def _even(points: Points) -> Points:
-    """Return points one step apart that end at the last one."""
-    along = arc_lengths(points)
-    arcs = along[-1] - STEP * np.arange(int(along[-1] / STEP) + 1)
-    if len(arcs) < 2:
-        arcs = along[[-1, 0]]
-    return point_at(points, along, arcs[::-1])

@@ -1,11 +1,12 @@
 """Partial traces of a search: where they are, how likely, and whether they must end."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from perception.cable.types import TraceEnd
+from perception.cable.types import Endpoint, TraceEnd
 from perception.models.frames import ScaledImage
 from perception.models.tracer_crop import STEP, WIDTH
 
@@ -131,6 +132,19 @@ class Ends:
 
     points: Floats
     directions: Floats
+
+    @classmethod
+    def of(cls, endpoints: Sequence[Endpoint], scaled: ScaledImage) -> "Ends":
+        """Return ends of the original image in a scaled one."""
+        return cls(
+            scaled.into(np.array([end.position_px for end in endpoints]).reshape(-1, 2)),
+            np.array([end.direction for end in endpoints]).reshape(-1, 2),
+        )
+
+    def without(self, place: Floats, near: float) -> "Ends":
+        """Return the ends that are not near a place."""
+        far = np.linalg.norm(self.points - place, axis=1) > near
+        return Ends(self.points[far], self.directions[far])
 
     def reached(self, path: Path) -> Floats | None:
         """Return the end that a path has come to, None if it has come to none."""

@@ -27,7 +27,7 @@ class SearchConfig:
         lost: Without any way or end more likely than this, a path is lost.
         end_odds: How often a step meets an end of the cable, over how often it did in training.
         window: Paths less likely than the best by this factor are dropped [nats].
-        most_looks: After so many looks what still goes on is lost.
+        most_looks: After so many looks for each start what still goes on is lost.
         leaps: Whether a look may give more than one step.
         rivals: How paths that meet again are compared.
     """
@@ -38,7 +38,7 @@ class SearchConfig:
     lost: float = 0.08
     end_odds: float = 0.15
     window: float = 4.5
-    most_looks: int = 600
+    most_looks: int = 400
     leaps: bool = True
     rivals: RivalConfig = field(default_factory=RivalConfig)
 
@@ -110,10 +110,12 @@ def run_searches(
     model: StepModel, image: ScaledImage, searches: Sequence[Search], most_looks: int
 ) -> None:
     """Let searches go on, all of them with one look of the network, until they have ended."""
-    for _ in range(most_looks):
+    left = most_looks * len(searches)
+    while left > 0:
         paths = [path for search in searches for path in search.alive]
         if not paths:
             return
+        left -= len(paths)
         outlooks = iter(model.outlooks(image, paths))
         for search in searches:
             if search.alive:

@@ -1,0 +1,195 @@
+"""How likely each whole trace is, given all that speaks for and against it.
+
+The odds of a trace are the exponential of a weighted sum of its features, those of "none of
+these" of another one (conditional logit, McFadden 1974). The weights are fitted on drawn
+scenes of known truth, `perception.training.trace_posterior`, so that beliefs come true as
+often as they say.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path as FilePath
+
+import numpy as np
+from pydantic import BaseModel, ConfigDict
+
+from executive.core.errors import InputError
+from perception.cable.observation import Observation
+from perception.cable.tracers.evidence import FEATURES, NONE_FEATURES, doubts, evidence
+from perception.cable.tracers.hypotheses import Hypothesis, hypotheses
+from perception.cable.tracers.search import SearchConfig
+from perception.cable.tracers.steps import StepModel
+from perception.cable.tracers.survey import Survey, View, survey, view_from
+from perception.cable.types import Endpoint, Points, Trace
+from perception.camera import GreyImage
+from perception.models.frames import Floats
+
+FILE = "posterior.json"
+Observe = Callable[[GreyImage], Observation | None]
+# A start with no more points than this at a known end tells nothing more than that end.
+MOST_AT_END = 2
+
+
+class Weights(BaseModel):
+    """The file `posterior.json` of a trained version.
+
+    Attributes:
+        trace: Weight of each feature of a trace, by its name.
+        none: Weight of each feature of "none of these".
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    trace: dict[str, float]
+    none: dict[str, float]
+
+    def probabilities(self, features: Floats, none: Floats) -> Floats:
+        """Return the probability of each trace and, last, of none, shape (K + 1,)."""
+        for_trace = np.array([self.trace[name] for name in FEATURES])
+        return shares(features, none, for_trace, np.array([self.none[k] for k in NONE_FEATURES]))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TracePosterior:
+    """Beliefs in whole traces of one cable.
+
+    Attributes:
+        traces: Distinct traces, likeliest first, each with its probability.
+        none: Probability that none of them follows the cable.
+    """
+
+    traces: tuple[Trace, ...]
+    none: float
+
+    @property
+    def best(self) -> Trace | None:
+        """The likeliest trace."""
+        return next(iter(self.traces), None)
+
+    def sample(self, rng: np.random.Generator) -> Trace | None:
+        """Draw a trace as often as it is likely; None for none of them."""
+        odds = np.array([*(trace.probability for trace in self.traces), self.none])
+        chosen = int(rng.choice(len(odds), p=odds / odds.sum()))
+        return self.traces[chosen] if chosen < len(self.traces) else None
+
+
+NOTHING = TracePosterior((), 1.0)
+
+
+class PosteriorTracer:
+    """Implements `Tracer` by searches from all ends and a posterior over whole traces.
+
+    Args:
+        folder: A trained version with `posterior.json`.
+        observe: Gives mask and width of the cables; without it they are looked for at each start.
+        config: Settings of the searches.
+
+    Raises:
+        InputError: The version has no weights of evidence, or others than this code knows.
+    """
+
+    def __init__(
+        self, folder: FilePath, observe: Observe | None = None, config: SearchConfig | None = None
+    ) -> None:
+        self._weights = read_weights(folder / FILE)
+        self._model = StepModel(folder)
+        self._observe, self._config = observe, config or SearchConfig()
+        # Traces from all ends of one image come from one survey.
+        self._surveyed = lru_cache(maxsize=2)(self._survey_ends)
+
+    def trace(
+        self, image: GreyImage, start_px: Points, endpoints: Sequence[Endpoint]
+    ) -> Trace | None:
+        """Follow the cable that starts at `start_px`; see `Tracer.trace`."""
+        return self.posterior(image, start_px, endpoints).best
+
+    def hypotheses(
+        self, image: GreyImage, start_px: Points, endpoints: Sequence[Endpoint]
+    ) -> tuple[Trace, ...]:
+        """Return distinct traces, likeliest first; their beliefs add up to less than 1."""
+        return self.posterior(image, start_px, endpoints).traces
+
+    def posterior(
+        self, image: GreyImage, start_px: Points, endpoints: Sequence[Endpoint]
+    ) -> TracePosterior:
+        """Return all beliefs about the cable that starts at `start_px`; see `Tracer.trace`."""
+        start_px = np.atleast_2d(np.asarray(start_px, dtype=float))
+        view = self._view(image, start_px)
+        if view is None:
+            return NOTHING
+        number = _end_at(start_px, endpoints, view.width_px)
+        if number is not None:
+            found = self._surveyed(image.tobytes(), image.shape, tuple(endpoints))
+            return posterior_of(found, number, self._weights) if found else NOTHING
+        found = survey(self._model, self._config, image, view, [start_px], endpoints)
+        return posterior_of(found, 0, self._weights)
+
+    def _view(self, image: GreyImage, start_px: Points) -> View | None:
+        if self._observe is None:
+            return view_from(image, start_px)
+        observation = self._observe(image)
+        mask = observation.mask if observation is not None else None
+        return View(mask.width_px, mask.cable) if mask is not None else None
+
+    def _survey_ends(
+        self, pixels: bytes, shape: tuple[int, int], endpoints: tuple[Endpoint, ...]
+    ) -> Survey | None:
+        """Follow cables from all ends; endpoints are told apart by being the same objects."""
+        image = np.frombuffer(pixels, dtype=np.uint8).reshape(shape)
+        starts = [end.position_px[None] for end in endpoints]
+        view = self._view(image, starts[0])
+        if view is None:
+            return None
+        return survey(self._model, self._config, image, view, starts, endpoints)
+
+
+def _end_at(start_px: Points, endpoints: Sequence[Endpoint], width_px: float) -> int | None:
+    """Return the end that a start without a way of its own is at, None for none."""
+    if len(start_px) > MOST_AT_END or not endpoints:
+        return None
+    gaps = np.array([np.linalg.norm(end.position_px - start_px[0]) for end in endpoints])
+    return int(gaps.argmin()) if gaps.min() < width_px else None
+
+
+def posterior_of(found: Survey, start: int, weights: Weights) -> TracePosterior:
+    """Return all beliefs about the cable at one end of a survey."""
+    candidates = hypotheses(found, start)
+    features, none = evidence(found, start, candidates), doubts(found, start)
+    beliefs = weights.probabilities(features, none)
+    order = np.argsort(-beliefs[:-1], kind="stable")
+    traces = tuple(_as_trace(found, start, candidates[k], float(beliefs[k])) for k in order)
+    return TracePosterior(traces, float(beliefs[-1]))
+
+
+def shares(features: Floats, none: Floats, for_trace: Floats, for_none: Floats) -> Floats:
+    """Return probabilities by the weights of a trace's features and of those of none."""
+    odds = np.append(features @ for_trace, none @ for_none)
+    odds = np.exp(odds - odds.max())
+    parts: Floats = odds / odds.sum()
+    return parts
+
+
+def read_weights(path: FilePath) -> Weights:
+    """Read weights of evidence.
+
+    Raises:
+        InputError: There is no such file, or it names other features.
+    """
+    if not path.exists():
+        raise InputError(
+            f"{path}: no weights of evidence; expected a fitted version; "
+            f"try python -m perception.training.trace_posterior {path.parent}"
+        )
+    weights = Weights.model_validate_json(path.read_text())
+    if set(weights.trace) != set(FEATURES) or set(weights.none) != set(NONE_FEATURES):
+        raise InputError(
+            f"{path}: got features {sorted({*weights.trace, *weights.none})}; "
+            f"expected {sorted({*FEATURES, *NONE_FEATURES})}; fit them again"
+        )
+    return weights
+
+
+def _as_trace(found: Survey, start: int, one: Hypothesis, belief: float) -> Trace:
+    points = found.image.back(np.vstack([found.ends.points[start], one.points]))
+    return Trace(points, one.end, belief)
