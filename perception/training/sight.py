@@ -22,7 +22,7 @@ SIDE_PX = 384
 POOL = 48
 FRESH = 3
 # Shares of the loss.
-MASK, HEATS, END, WIDTH, RADIUS, CONNECTOR = 4.0, (1.0, 0.4, 0.3), 0.5, 0.5, 0.2, 1.0
+MASK, HEATS, END, WIDTH, RADIUS, CONNECTOR = 4.0, (1.0, 0.4, 0.3), 0.5, 2.0, 0.2, 1.0
 # For the figures only: how sure, and how many cells off, counts as found.
 LIKELY, NEAR_CELLS = 0.3, 2.5
 
