@@ -5,7 +5,7 @@ simulators of robots draw, round cables on bare or chequered ground; `plain` is 
 plots and simple renderers have it, with borders that may be jagged.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -193,9 +193,16 @@ def draw_look(
         _table(rng, style, level, cable),
         looks,
         _light(rng, style),
-        _lens(rng, style, contrast, (level, *(look.brightness for look in looks))),
+        _lens(rng, style, contrast, (level, *_levels(looks))),
         connectors=_chance(rng, 0.7),
     )
+
+
+def _levels(cables: Sequence[CableLook]) -> list[float]:
+    """Return the grey values of cables, stripes included."""
+    return [
+        min(cable.brightness * share, 255.0) for cable in cables for share in (1.0, cable.stripe)
+    ]
 
 
 def _chance(rng: np.random.Generator, probability: float) -> bool:
