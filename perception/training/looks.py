@@ -296,7 +296,7 @@ def _cable_looks(
         if not (alike or one_colour):
             other = _other_brightness(rng, brightness, table)
             look = draw(rng, other, abs(other - table)) if _chance(rng, 0.5) else look
-            look = _striped(rng, replace(look, brightness=other), table)
+            look = _striped(rng, replace(look, brightness=other, stripe=1.0), table)
         if not (alike or one_width):
             look = replace(look, width=float(np.exp(np.clip(rng.normal(0, 0.16), -0.35, 0.35))))
         looks.append(look)

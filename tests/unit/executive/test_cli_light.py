@@ -32,6 +32,7 @@ MISSION = Path(__file__).parents[3] / "trees" / "missions" / "untangle.yaml"
         ["tree", "show", str(MISSION)],
         ["inspect", "--help"],
         ["perceive", "cable", "--help"],
+        ["train", "--help"],
         ["doctor", "--help"],
     ],
 )

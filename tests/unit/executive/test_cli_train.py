@@ -60,7 +60,6 @@ def test_data_that_were_stopped_go_on_to_the_same(tmp_path, monkeypatch):
         (["--cables", "0-2"], "--cables: .* greater than or equal to 1; got 0"),
         (["--cables", "3-1"], "--cables: got 3-1; expected the smaller one first"),
         (["--cables", "two"], "--cables: got 'two'; expected such as 2 or 1-3"),
-        (["--size", "640"], "--width|--size"),
         (["--size", "60x60"], "--size: got 60x60; expected at least 168 px each way"),
         (["--width", "14-4"], "--width: got 14-4; expected the smaller one first"),
         (["--crops", "tracr"], "--crops: unknown; got 'tracr'; did you mean 'tracer'"),
@@ -69,8 +68,6 @@ def test_data_that_were_stopped_go_on_to_the_same(tmp_path, monkeypatch):
 )
 def test_what_cannot_be_drawn_is_said_before_anything_is_written(tmp_path, arguments, message):
     out = tmp_path / "set"
-    if arguments == ["--size", "640"]:
-        pytest.skip("one number is a square")
     result = train("data", "--out", out, *arguments)
     assert isinstance(result.exception, InputError)
     with pytest.raises(InputError, match=message):

@@ -59,9 +59,7 @@ def test_cables_of_every_style_differ_from_their_table(style):
         for cable in look.cables:
             levels = np.array([look.table.level, cable.brightness, cable.brightness * cable.stripe])
             table, *seen = 255.0 * (levels.clip(0.0, 255.0) / 255.0) ** look.lens.gamma
-            gaps = np.abs(np.array(seen) - table)
-            assert gaps[0] > LEAST_CONTRAST - 1.0
-            assert gaps[1] > 5.0
+            assert np.abs(np.array(seen) - table).min() > LEAST_CONTRAST - 1.0
 
 
 @pytest.mark.parametrize("style", sorted(STYLES))
