@@ -82,6 +82,7 @@ class AfterStep(BaseModel):
         step: One of `perception.training.tasks.STEPS`.
         batches: How many batches of samples it takes, none for as many as usual.
         scenes: How many scenes it takes, none for as many as usual.
+        held_out: How many scenes it measures on, none for as many as usual.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -89,17 +90,26 @@ class AfterStep(BaseModel):
     step: str
     batches: PositiveInt | None = None
     scenes: PositiveInt | None = None
+    held_out: PositiveInt | None = None
 
     def options(self) -> list[str]:
         """Return its options for a command line."""
-        given = (("--batches", self.batches), ("--scenes", self.scenes))
-        return [word for flag, count in given if count for word in (flag, str(count))]
+        return [
+            word
+            for name, count in self._counts().items()
+            for word in (f"--{name.replace('_', '-')}", str(count))
+        ]
 
     def scaled(self, scale: float) -> "AfterStep":
         """Return the same with `scale` times the work."""
-        counts = {"batches": self.batches, "scenes": self.scenes}
-        known = {name: max(round(n * scale), LEAST) for name, n in counts.items() if n}
-        return self.model_copy(update=known)
+        counts = self._counts().items()
+        return self.model_copy(
+            update={name: max(round(count * scale), LEAST) for name, count in counts}
+        )
+
+    def _counts(self) -> dict[str, int]:
+        counts = {"batches": self.batches, "scenes": self.scenes, "held_out": self.held_out}
+        return {name: count for name, count in counts.items() if count is not None}
 
 
 class VersionRecipe(BaseModel):

@@ -26,7 +26,7 @@ TASKS: Mapping[str, str] = MappingProxyType(
 # What usually comes after the training of a task.
 AFTER: Mapping[str, tuple[str, ...]] = MappingProxyType(
     {
-        "tracer": ("calibrate",),
+        "tracer": ("calibrate", "trace-posterior"),
         "crossing": ("calibrate",),
         "sight": ("sight-calibration",),
         "thesis-crossing": ("calibrate",),

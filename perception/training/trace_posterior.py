@@ -203,13 +203,13 @@ def figures(seen: Sequence[Example], weights: Weights) -> dict[str, float]:
     }
 
 
-def main() -> None:
+def main(arguments: Sequence[str] | None = None) -> None:
     """Fit the weights, write them, and the figures on scenes of another seed."""
     parser = argparse.ArgumentParser(prog="python -m perception.training.trace_posterior")
     parser.add_argument("folder", type=Path, help="folder of a trained tracer")
     parser.add_argument("--scenes", type=int, default=400, help="to fit with, default 400")
     parser.add_argument("--held-out", type=int, default=200, help="to measure on, default 200")
-    options = parser.parse_args()
+    options = parser.parse_args(arguments)
     model = StepModel(options.folder)
     weights = fit(list(examples(model, SEED, options.scenes)))
     (options.folder / FILE).write_text(weights.model_dump_json(indent=2) + "\n")
