@@ -87,10 +87,13 @@ class MoveRules:
         free_ends: Whether the first and the last end can be moved.
         most_passed: Past how many visits an end is drawn in one move; more, and friction
             around the strands that it bends about wins over the hand.
+        most_loops: From below how many strands an end is drawn when that undoes a knot; more,
+            and the knot is pulled tight before the end comes free.
     """
 
     free_ends: tuple[bool, bool] = (True, True)
     most_passed: int = 4
+    most_loops: int = 1
 
 
 @dataclass(slots=True)
@@ -132,14 +135,14 @@ class MoveFinder:
         """Yield the pull past the first visits; none where a knot has no loop to hold."""
         after = diagram.without(frozenset(diagram.visits[:count]))
         loop, hold = _loop_around(diagram, count), diagram.span(count)
+        below = diagram.over[:count].count(False)
         kind = MoveKind.PULL_OUT
         holds: tuple[Hold, ...] = (Hold("pinch", hold, hold[0]),)
         if self._polynomial(diagram) != self._polynomial(after):
-            if loop is None:
+            if loop is None or below > self.rules.most_loops:
                 return
             kind = MoveKind.DILATE
             holds = (Hold("cage", hold, hold[0]), _hold_on_top(diagram, loop, count))
-        below = diagram.over[:count].count(False)
         yield Move(kind, "start", (0.0, diagram.arcs[count - 1]), holds, count, below, after)
 
     def _polynomial(self, diagram: OpenDiagram) -> Polynomial:
@@ -181,14 +184,14 @@ def _loop_around(diagram: OpenDiagram, count: int) -> int | None:
 
 
 def _hold_on_top(diagram: OpenDiagram, place: int, count: int) -> Hold:
-    """Return where to pinch the strand on top: from undercrossing to undercrossing."""
-    low, high = place, place
+    """Return where to pinch the strand on top, from the undercrossing before it.
+
+    Beyond it the pinch would be outside of the loop, and pull it tight.
+    """
+    low = place
     while low > count and diagram.over[low - 1]:
         low -= 1
-    while high + 1 < len(diagram.visits) and diagram.over[high + 1]:
-        high += 1
-    interval = (diagram.span(low)[0], diagram.span(high + 1)[1])
-    return Hold("pinch", interval, diagram.arcs[place])
+    return Hold("pinch", (diagram.span(low)[0], diagram.arcs[place]), diagram.arcs[place])
 
 
 def _turned(move: Move) -> Move:
