@@ -32,7 +32,10 @@ def find_modes(cells: Floats, least: float, most: int, reach: int = 2) -> tuple[
         most: Return at most so many.
         reach: A mode takes the cells up to this far from its peak.
     """
-    left = np.pad(cells, reach)
+    rows, columns = cells.shape
+    # A frame of zeros, without the cost of a general padding: this runs at every step.
+    left = np.zeros((rows + 2 * reach, columns + 2 * reach))
+    left[reach:-reach, reach:-reach] = cells
     around = np.arange(-reach, reach + 1)
     modes = []
     for _ in range(most):
