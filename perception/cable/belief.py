@@ -10,7 +10,7 @@ from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 
 from perception.cable.outcomes import MOST_COMBINATIONS, Outcomes, outcomes
-from perception.cable.topology.knot_type import UNKNOT, UNKNOWN
+from perception.cable.topology.names import UNKNOT, UNKNOWN
 from perception.cable.types import Crossing, KnotBelief, Reading, Trace, TraceEnd
 
 # How much a trace that ends like this can tell about the whole cable.

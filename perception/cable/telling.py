@@ -15,7 +15,7 @@ from perception.cable.belief import Chances, knotted_share, listings, mixed, sur
 from perception.cable.outcomes import Outcomes
 from perception.cable.parting import parting_arc
 from perception.cable.polyline import arc_lengths, point_at
-from perception.cable.topology.knot_type import UNKNOWN
+from perception.cable.topology.names import UNKNOWN
 from perception.cable.types import Crossing, Points, Question, QuestionKind, Reading
 
 # Readings of one cable see the same crossing within this distance.

@@ -127,7 +127,7 @@ class KnotBelief:
     """How likely a cable holds a knot.
 
     Attributes:
-        name: The knot as `perception.cable.topology.knot_type` names it, with its ends joined
+        name: The knot as `perception.cable.topology.names` names it, with its ends joined
             over everything; `0_1` for no knot, `unknown` where the cable was not read.
         probability: Belief in it.
     """

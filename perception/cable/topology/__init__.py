@@ -2,7 +2,7 @@
 
 from perception.cable.topology.curve import Strand, StrandCrossing, close_over, curve_crossings
 from perception.cable.topology.diagram import Diagram
-from perception.cable.topology.knot_type import knot_type
+from perception.cable.topology.names import knot_type
 from perception.cable.topology.verdict import (
     Knottedness,
     Proof,

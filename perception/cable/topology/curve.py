@@ -12,6 +12,11 @@ from numpy.typing import NDArray
 from perception.cable.topology.diagram import Diagram
 
 Floats = NDArray[np.float64]
+Indices = NDArray[np.intp]
+
+# Segments are looked at in blocks, for speed.
+BLOCK = 16
+TOUCHING = 1e-9
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,25 +60,48 @@ def intersections(a: Floats, b: Floats) -> tuple[Floats, Floats, NDArray[np.int6
         Positions along `a`, along `b` (in segments from their starts), and the turn from
         `a` onto `b` (+1 counter-clockwise with y up), each of shape (K,).
     """
-    ends_left = _sides(a, b)
-    starts_left = _sides(b, a).T
-    meet = (ends_left[:, :-1] != ends_left[:, 1:]) & (starts_left[:-1] != starts_left[1:])
-    i, j = np.nonzero(meet)
+    i, j = _near_segments(a, b)
     along_a, along_b = a[i + 1] - a[i], b[j + 1] - b[j]
+    meet = (_left(along_a, b[j] - a[i]) != _left(along_a, b[j + 1] - a[i])) & (
+        _left(along_b, a[i] - b[j]) != _left(along_b, a[i + 1] - b[j])
+    )
     area = _cross(along_a, along_b)
-    apart = area != 0.0
-    i, j, area = i[apart], j[apart], area[apart]
+    apart = meet & (area != 0.0)
+    i, j, area, along_a, along_b = i[apart], j[apart], area[apart], along_a[apart], along_b[apart]
     offset = b[j] - a[i]
-    u = np.clip(_cross(offset, along_b[apart]) / area, 0.0, 1.0)
-    v = np.clip(_cross(offset, along_a[apart]) / area, 0.0, 1.0)
+    u = np.clip(_cross(offset, along_b) / area, 0.0, 1.0)
+    v = np.clip(_cross(offset, along_a) / area, 0.0, 1.0)
     return i + u, j + v, np.sign(area).astype(np.int64)
 
 
-def _sides(lines: Floats, points: Floats) -> NDArray[np.bool_]:
-    """Say for each segment of `lines` which of `points` lie to its left."""
-    along = lines[1:] - lines[:-1]
-    offset = points[None, :, :] - lines[:-1, None, :]
-    left: NDArray[np.bool_] = _cross(along[:, None, :], offset) >= 0.0
+def _near_segments(a: Floats, b: Floats) -> tuple[Indices, Indices]:
+    """Return pairs of segments that may meet: those of blocks whose boxes overlap, in order."""
+    low_a, high_a = _boxes(a)
+    low_b, high_b = _boxes(b)
+    overlap = (low_a[:, None] <= high_b[None]) & (low_b[None] <= high_a[:, None])
+    blocks_a, blocks_b = np.nonzero(overlap.all(axis=2))
+    within = np.arange(BLOCK)
+    i = np.repeat(blocks_a[:, None] * BLOCK + within, BLOCK, axis=1).ravel()
+    j = np.tile(blocks_b[:, None] * BLOCK + within, BLOCK).ravel()
+    known = (i < len(a) - 1) & (j < len(b) - 1)
+    i, j = i[known], j[known]
+    order = np.lexsort((j, i))
+    return i[order], j[order]
+
+
+def _boxes(points: Floats) -> tuple[Floats, Floats]:
+    """Return the least and greatest coordinates of each block of segments."""
+    starts = np.arange(0, max(len(points) - 1, 1), BLOCK)
+    # A block's last segment ends where the next one begins.
+    ends = points[np.minimum(starts + BLOCK, len(points) - 1)]
+    low = np.minimum(np.minimum.reduceat(points, starts), ends)
+    high = np.maximum(np.maximum.reduceat(points, starts), ends)
+    return low - TOUCHING, high + TOUCHING
+
+
+def _left(along: Floats, offset: Floats) -> NDArray[np.bool_]:
+    """Say which offsets from a segment's start lie to its left."""
+    left: NDArray[np.bool_] = _cross(along, offset) >= 0.0
     return left
 
 

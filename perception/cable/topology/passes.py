@@ -118,15 +118,18 @@ def lay(diagram: Diagram, run: Run, way: list[tuple[int, bool]]) -> Diagram:
         The diagram; it starts with the visits of the new way.
     """
     count, on_top = len(diagram.visits), diagram.over[run.start]
-    lifted = {diagram.visits[(run.start + step) % count] for step in range(run.length)}
+    turned = [*range(run.start, count), *range(run.start)]
+    lifted = {diagram.visits[place] for place in turned[: run.length]}
     sign_of = dict(enumerate(diagram.signs))
+    if not way:
+        left = [place for place in turned if diagram.visits[place] not in lifted]
+        return compact([diagram.visits[k] for k in left], [diagram.over[k] for k in left], sign_of)
     new_at: dict[int, int] = {}
     for number, (edge, from_left) in enumerate(way, start=len(diagram)):
         new_at[edge] = number
         sign_of[number] = 1 if from_left == on_top else -1
     visits, over = list(range(len(diagram), len(diagram) + len(way))), [on_top] * len(way)
-    for step in range(run.length - 1, count):
-        place = (run.start + step) % count
+    for step, place in enumerate(turned[run.length - 1 :], start=run.length - 1):
         if step >= run.length and diagram.visits[place] not in lifted:
             visits.append(diagram.visits[place])
             over.append(diagram.over[place])

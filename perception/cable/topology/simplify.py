@@ -34,6 +34,13 @@ def simplification(diagram: Diagram, states: int = STATES) -> tuple[Step, ...]:
     return (*steps, *search(reached(diagram, steps), states))
 
 
+def cancel(diagram: Diagram) -> Diagram:
+    """Return the diagram after every Reidemeister I and II that saves crossings."""
+    while diagram.visits and (step := first_loop(diagram) or first_bigon(diagram)) is not None:
+        diagram = step.after
+    return diagram
+
+
 def shorten(diagram: Diagram) -> Diagram:
     """Return the diagram after every move that saves crossings."""
     return reached(diagram, shortening(diagram))

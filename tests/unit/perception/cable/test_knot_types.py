@@ -13,7 +13,7 @@ from perception.cable.topology.certificate import certify
 from perception.cable.topology.checker import replay
 from perception.cable.topology.diagram import Diagram
 from perception.cable.topology.jones import jones_polynomial
-from perception.cable.topology.knot_type import _invariants, _names, summands
+from perception.cable.topology.names import _invariants, _names, summands
 from perception.cable.topology.polynomial import ONE, Laurent
 
 # 11n_34 and 11n_42: the smallest knots whose Alexander polynomial is 1.

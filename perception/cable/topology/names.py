@@ -3,6 +3,7 @@
 A diagram that falls into parts, each joined to the rest by one strand, is a sum, and each part
 has its own name. A part with up to 8 crossings is named by its Alexander and Jones polynomials,
 which are different for all knots with up to 8 crossings, sums among them (a test adds them up).
+The unknot is told by them up to 24 crossings, see `verdict`.
 A knot that differs from its mirror image is right-handed when the powers of its Jones polynomial
 lie on the positive side, as those of the right-handed trefoil do.
 """
@@ -16,8 +17,8 @@ from perception.cable.topology.braids import BRAIDS, closed_braid
 from perception.cable.topology.diagram import Diagram, compact
 from perception.cable.topology.jones import jones_polynomial
 from perception.cable.topology.polynomial import ONE, Laurent
-from perception.cable.topology.simplify import reached, simplify
-from perception.cable.topology.verdict import Knottedness, judge, reduction
+from perception.cable.topology.simplify import cancel, is_alternating, shorten, simplify
+from perception.cable.topology.verdict import JONES_DECIDES_CROSSINGS
 
 UNKNOT = "0_1"
 # A knot that has no name here, or whose diagram does not get small enough to be told.
@@ -25,6 +26,8 @@ OTHER = "other"
 # Nothing is known: the diagram cannot be drawn, or the cable was not seen.
 UNKNOWN = "unknown"
 MOST_CROSSINGS = 8
+# Diagrams of equal size that are looked at where polynomials are those of a smaller knot.
+STATES = 12
 
 # Alexander and Jones polynomials.
 Invariants = tuple[Laurent, Laurent]
@@ -34,12 +37,15 @@ def knot_type(diagram: Diagram) -> str:
     """Return the name of the knot of a closed diagram, e.g. `3_1 left # 4_1`."""
     if not diagram.is_planar():
         return UNKNOWN
-    reduced = reached(diagram, reduction(diagram))
-    state = judge(diagram, reduced).state
-    if state is not Knottedness.KNOTTED:
-        return UNKNOT if state is Knottedness.UNKNOT else UNKNOWN
+    # Polynomials tell a small knot faster than moves undo it, except for the simplest moves.
+    reduced = cancel(diagram)
+    if len(reduced) > MOST_CROSSINGS:
+        reduced = shorten(reduced)
     names = sorted(name for part in summands(reduced) if (name := _name(part)) != UNKNOT)
-    return OTHER if OTHER in names else " # ".join(names)
+    for unsure in (UNKNOWN, OTHER):
+        if unsure in names:
+            return unsure
+    return " # ".join(names) or UNKNOT
 
 
 def summands(diagram: Diagram) -> Iterator[Diagram]:
@@ -71,15 +77,24 @@ def _inner_part(diagram: Diagram) -> tuple[int, int] | None:
 
 @lru_cache(maxsize=4096)
 def _name(part: Diagram) -> str:
+    if len(part) > MOST_CROSSINGS and is_alternating(part):
+        return OTHER
     found = _names().get(_invariants(part), OTHER)
-    if found == OTHER or len(part) <= MOST_CROSSINGS:
+    if len(part) <= MOST_CROSSINGS:
         return found
+    if found == UNKNOT:
+        return UNKNOT if len(part) <= JONES_DECIDES_CROSSINGS else UNKNOWN
     # A larger knot may have the same polynomials, as 10_132 and 5_1 do.
-    return found if len(simplify(part)) <= MOST_CROSSINGS else OTHER
+    small = found != OTHER and len(simplify(part, STATES)) <= MOST_CROSSINGS
+    return found if small else OTHER
+
+
+def _alexander(diagram: Diagram) -> Laurent:
+    return Laurent(0, alexander_polynomial(diagram))
 
 
 def _invariants(diagram: Diagram) -> Invariants:
-    return Laurent(0, alexander_polynomial(diagram)), jones_polynomial(diagram)
+    return _alexander(diagram), jones_polynomial(diagram)
 
 
 @cache
