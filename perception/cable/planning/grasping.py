@@ -10,15 +10,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from perception.cable.grasp_points import GraspConfig, HeldStrand
-from perception.cable.planning.moves import END_MOVES, Hold, Move, MoveKind, Role
+from perception.cable.planning.moves import Hold, Move, MoveKind, Role
 from perception.cable.planning.open_diagram import OpenDiagram
 from perception.cable.polyline import arc_lengths
 from perception.cable.topology.curve import Strand
 from perception.cable.types import Points
 
 STEP_PX = 4.0
-# Hands look for a free way this far to both sides of the best one, so finely.
-WAYS = 32
+# Ways that hands choose from, and places along each where room is looked for.
+WAYS, SPOTS = 32, 12
 # Room counts so much more than being near the best place, a pixel of it [1/px].
 NEARNESS = 0.01
 
@@ -86,50 +86,52 @@ class Places:
     def grasps(self, move: Move) -> tuple[Grasp, ...]:
         """Return what each hand does."""
         taken = [self.best(hold) for hold in move.holds]
-        points = [self.held.point(arc * self.held.length_px) for arc, _ in taken]
+        targets = self._targets(move, [arc for arc, _ in taken])
         return tuple(
             Grasp(
-                hold.role,
-                point,
-                self.held.direction(arc * self.held.length_px),
-                to,
-                arc,
-                room,
+                role=hold.role,
+                point=self._point(arc),
+                direction=self.held.direction(arc * self.held.length_px),
+                to=to,
+                arc=arc,
+                room=room,
             )
-            for hold, (arc, room), point, to in zip(
-                move.holds, taken, points, self._targets(move, points), strict=True
-            )
+            for hold, (arc, room), to in zip(move.holds, taken, targets, strict=True)
         )
 
-    def _targets(self, move: Move, points: Sequence[Points]) -> list[Points]:
+    def _targets(self, move: Move, arcs: Sequence[float]) -> list[Points]:
         """Return where each hand goes."""
         drawn_px = (move.interval[1] - move.interval[0]) * self.held.length_px
-        if len(points) == 2:
-            return _apart(points[0], points[1], drawn_px)
-        if move.kind not in END_MOVES:
-            return [self._beside(move)]
-        origin = self._fold(move) if move.kind is MoveKind.LIFT_END else points[0]
-        return [self._free_way(origin, move.interval, drawn_px)]
+        far_px = drawn_px + 2.0 * self._config.room_px
+        if len(arcs) == 2:
+            # What lies between both hands becomes straight before more is drawn in.
+            between_px = abs(arcs[1] - arcs[0]) * self.held.length_px
+            span_px = between_px + (0.0 if move.kind is MoveKind.UNTWIST else far_px)
+            return _apart(self._point(arcs[0]), self._point(arcs[1]), span_px)
+        if move.stays is None:
+            marks = move.across or move.interval
+            return [np.mean([self._point(arc) for arc in marks], axis=0)]
+        # An end that is lifted hangs on the cable behind the last strand that it lay on.
+        lifted = move.kind is MoveKind.LIFT_END
+        fold = self._fold(move.stays, near=move.interval) if lifted else arcs[0]
+        return [self._free_way(fold, move.interval, far_px)]
 
-    def _beside(self, move: Move) -> Points:
-        """Return the middle of a strand's new way: between its ends, or where it will cross."""
-        marks = move.across or move.interval
-        middle: Points = np.mean([self.held.point(a * self.held.length_px) for a in marks], axis=0)
-        return middle
+    def _point(self, arc: float) -> Points:
+        return self.held.point(arc * self.held.length_px)
 
-    def _fold(self, move: Move) -> Points:
-        """Return where an end that is lifted will hang on the cable that stays."""
-        stays = move.interval[1] if move.end == "start" else move.interval[0]
-        return self.held.point(stays * self.held.length_px)
+    def _fold(self, stays: tuple[float, float], near: tuple[float, float]) -> float:
+        """Return a place on the edge that stays, near the end that is moved."""
+        reach = min(self._config.own_px / self.held.length_px, 0.5 * (stays[1] - stays[0]))
+        return stays[0] + reach if stays[0] >= near[1] else stays[1] - reach
 
-    def _free_way(self, origin: Points, moved: tuple[float, float], far_px: float) -> Points:
+    def _free_way(self, fold: float, moved: tuple[float, float], far_px: float) -> Points:
         """Return the point at a distance whose straight way there is freest of other cable."""
-        arcs = self.held.arcs / self.held.length_px
-        stays = self.held.line[(arcs < moved[0]) | (arcs > moved[1])]
-        stays = stays[np.linalg.norm(stays - origin, axis=1) > self._config.own_px]
+        arcs, origin = self.held.arcs / self.held.length_px, self._point(fold)
+        own = np.abs(arcs - fold) * self.held.length_px <= self._config.own_px
+        stays = self.held.line[~own & ((arcs < moved[0]) | (arcs > moved[1]))]
         angles = np.arange(WAYS) * 2.0 * np.pi / WAYS
         ways = np.column_stack([np.cos(angles), np.sin(angles)])
-        shares = np.linspace(0.2, 1.0, 9)
+        shares = np.arange(1, SPOTS + 1) / SPOTS
         spots = origin + far_px * shares[None, :, None] * ways[:, None, :]
         gaps_px = np.linalg.norm(spots[:, :, None] - stays[None, None], axis=3)
         nearest_px = gaps_px.min(axis=(1, 2), initial=1e3)
@@ -137,8 +139,9 @@ class Places:
         return freest
 
 
-def _apart(a: Points, b: Points, far_px: float) -> list[Points]:
-    """Return where two hands are when they have moved apart, each half of the way."""
+def _apart(a: Points, b: Points, span_px: float) -> list[Points]:
+    """Return where two hands are when they have moved to a distance, or stay farther apart."""
     between = b - a
-    unit = between / max(float(np.linalg.norm(between)), 1e-9)
-    return [a - 0.5 * far_px * unit, b + 0.5 * far_px * unit]
+    now_px = max(float(np.linalg.norm(between)), 1e-9)
+    step = 0.5 * max(span_px - now_px, 0.0) * between / now_px
+    return [a - step, b + step]

@@ -66,7 +66,8 @@ class Move:
         passed: Visits that are undone or laid elsewhere.
         below: How many of these run under another strand.
         predicted: The diagram that should be left.
-        across: Arc positions of the strands that it is laid over anew.
+        stays: The edge behind what an end is drawn from, as arc positions; None for no end.
+        across: Arc positions of the strands that a run is laid over anew.
     """
 
     kind: MoveKind
@@ -76,6 +77,7 @@ class Move:
     passed: int
     below: int
     predicted: OpenDiagram
+    stays: tuple[float, float] | None = None
     across: tuple[float, ...] = ()
 
 
@@ -143,7 +145,8 @@ class MoveFinder:
                 return
             kind = MoveKind.DILATE
             holds = (Hold("cage", hold, hold[0]), _hold_on_top(diagram, loop, count))
-        yield Move(kind, "start", (0.0, diagram.arcs[count - 1]), holds, count, below, after)
+        moved = (0.0, diagram.arcs[count - 1])
+        yield Move(kind, "start", moved, holds, count, below, after, diagram.span(count))
 
     def _polynomial(self, diagram: OpenDiagram) -> Polynomial:
         if diagram not in self._polynomials:
@@ -158,9 +161,10 @@ def _lift_end(diagram: OpenDiagram, count: int) -> Move:
         "start",
         (0.0, diagram.arcs[count - 1]),
         (Hold("pinch", tip, 0.0),),
-        count,
-        0,
-        diagram.without(frozenset(diagram.visits[:count])),
+        passed=count,
+        below=0,
+        predicted=diagram.without(frozenset(diagram.visits[:count])),
+        stays=diagram.span(count),
     )
 
 
@@ -206,6 +210,7 @@ def _turned(move: Move) -> Move:
         interval=flipped(move.interval),
         holds=tuple(Hold(h.role, flipped(h.interval), 1.0 - h.near) for h in move.holds),
         predicted=move.predicted.backwards(),
+        stays=flipped(move.stays) if move.stays else None,
     )
 
 
