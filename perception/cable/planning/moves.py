@@ -131,7 +131,7 @@ class MoveFinder:
         own = set(diagram.visits[:count]) - set(diagram.visits[count:])
         if len(own) < LOCKING:
             return False
-        return self._polynomial(_piece(diagram, count, own)) != (1,)
+        return self.polynomial(_piece(diagram, count, own)) != (1,)
 
     def _pull(self, diagram: OpenDiagram, count: int) -> Iterator[Move]:
         """Yield the pull past the first visits; none where a knot has no loop to hold."""
@@ -140,7 +140,7 @@ class MoveFinder:
         below = diagram.over[:count].count(False)
         kind = MoveKind.PULL_OUT
         holds: tuple[Hold, ...] = (Hold("pinch", hold, hold[0]),)
-        if self._polynomial(diagram) != self._polynomial(after):
+        if self.polynomial(diagram) != self.polynomial(after):
             if loop is None or below > self.rules.most_loops:
                 return
             kind = MoveKind.DILATE
@@ -148,7 +148,8 @@ class MoveFinder:
         moved = (0.0, diagram.arcs[count - 1])
         yield Move(kind, "start", moved, holds, count, below, after, diagram.span(count))
 
-    def _polynomial(self, diagram: OpenDiagram) -> Polynomial:
+    def polynomial(self, diagram: OpenDiagram) -> Polynomial:
+        """Return the Alexander polynomial of a diagram with its ends joined."""
         if diagram not in self._polynomials:
             self._polynomials[diagram] = alexander_polynomial(diagram.closed())
         return self._polynomials[diagram]
@@ -232,7 +233,7 @@ def _laid_elsewhere(
 ) -> Iterator[Move]:
     if run != longest and not faces.crosses_nothing(run):
         return
-    way = faces.way(run)
+    way = faces.way(run) if run == longest else []
     if way is None:
         return
     on_top = diagram.over[run.first]

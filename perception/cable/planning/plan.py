@@ -32,7 +32,7 @@ KIND_COSTS: Mapping[MoveKind, float] = MappingProxyType(
 )
 
 # Where the cheapest plan is too far to search for, crossings that are left weigh so much more.
-HASTE = 10.0
+HASTE = 3.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,7 +71,7 @@ class PlannerConfig:
     costs: MoveCosts = field(default_factory=MoveCosts)
     grasps: GraspConfig = field(default_factory=GraspConfig)
     least_room: float = 0.3
-    states: int = 400
+    states: int = 300
 
 
 class PlanFailure(StrEnum):
@@ -209,6 +209,8 @@ class _Planner:
     def _is_goal(self, diagram: OpenDiagram) -> bool:
         if self._config.goal == "uncrossed" or not diagram.visits:
             return not diagram.visits
+        if self._finder.polynomial(diagram) != (1,):
+            return False
         return classify_diagram(diagram.closed()).state is Knottedness.UNKNOT
 
     def _left(self, diagram: OpenDiagram) -> float:
