@@ -1,5 +1,7 @@
 """Knots of a size as the core of a cable, tied, or the same shape with nothing tied in it."""
 
+from functools import cache
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -33,9 +35,9 @@ def knot_core(
     """
     template = TEMPLATES[knot]
     over = template.over if tied else _untied(rng, template)
-    points = template.curve_m(1.0, 0.004)
-    points = points * (diameter / closed_diameter(points)) * (1.0, rng.choice([-1.0, 1.0]))
-    points = resample(_trimmed(points), WAYPOINTS)
+    points, low, high, size = _measured(template)
+    points = points * (diameter / size) * (1.0, rng.choice([-1.0, 1.0]))
+    points = resample(_trimmed(points, low, high), WAYPOINTS)
     middle = 0.5 * (points.min(axis=0) + points.max(axis=0))
     mirrored = bool(rng.random() < 0.5)
     return Core(place + turned(rng, points - middle), tuple(o != mirrored for o in over))
@@ -46,6 +48,13 @@ def closed_diameter(points: Floats) -> float:
     low, high = _closed(points)
     closed = points[low : high + 1]
     return float(np.linalg.norm(closed[:, None] - closed[None], axis=2).max())
+
+
+@cache
+def _measured(template: KnotTemplate) -> tuple[Floats, int, int, float]:
+    """Return a template's curve, between which nodes it is closed, and how large there."""
+    points = template.curve_m(1.0, 0.004)
+    return points, *_closed(points), closed_diameter(points)
 
 
 def _untied(rng: np.random.Generator, template: KnotTemplate) -> tuple[bool, ...]:
@@ -64,8 +73,7 @@ def _closed(points: Floats) -> tuple[int, int]:
     return int(first.min()), int(second.max()) + 1
 
 
-def _trimmed(points: Floats) -> Floats:
+def _trimmed(points: Floats, low: int, high: int) -> Floats:
     """Return a curve from a little before its first to a little after its last crossing."""
-    low, high = _closed(points)
     reach = max(int(BEYOND / float(np.linalg.norm(points[1] - points[0]))), 2)
     return points[max(low - reach, 0) : high + reach + 1]

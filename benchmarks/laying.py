@@ -4,6 +4,7 @@ All lengths are in cable widths of 6.6 mm. A piece may prescribe what is over an
 at its crossings; tails wander with slowly changing curvature, as dropped cable lies.
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -29,6 +30,8 @@ CONFIG = SceneConfig(
 )
 # What of the square of that extent the camera sees, less a margin.
 LOW, HIGH = np.array([6.0, 28.0]), np.array([174.0, 152.0])
+# Between the middles of two knots, and from there to the margin.
+BETWEEN, INSIDE = 36.0, 25.0
 STEP = 3.0
 # Typical curvature of cable on a table, and how fast it changes; its least radius.
 CURVATURE, MEMORY, TIGHTEST = 1.0 / 18.0, 0.8, 5.0
@@ -45,14 +48,27 @@ class Core:
 
     Attributes:
         points: Waypoints, shape (N, 2).
-        over: Whether the cable is on top at each of its visits in order: of crossings with
-            itself, or where `other` is given of those with another core.
-        other: Which core that is.
+        over: Whether the cable is on top at each of its visits of crossings with itself, in
+            order; nothing for as chance will have it.
     """
 
     points: Floats
     over: tuple[bool, ...] = ()
-    other: int | None = None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Part:
+    """What one cable has to do with a knot.
+
+    Attributes:
+        cable: Number of the cable.
+        points: Its waypoints from one side of the knot to the other, shape (N, 2).
+        over: Whether it is on top at each of its visits of the knot's crossings, in order.
+    """
+
+    cable: int
+    points: Floats
+    over: tuple[bool, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,9 +83,19 @@ class Prescribed:
 
 
 def laid(
-    rng: np.random.Generator, cores: Sequence[Core], lengths: Sequence[float]
+    rng: np.random.Generator,
+    cores: Sequence[Core],
+    lengths: Sequence[float],
+    ties: Sequence[Sequence[Part]] = (),
 ) -> tuple[list[Floats], Prescribed] | None:
     """Lay cables of these lengths, grown from their cores.
+
+    Args:
+        rng: Source of all randomness.
+        cores: What is laid first of each cable.
+        lengths: How long the cables are [cable widths].
+        ties: Knots that lie within the cores and tie several cables together; of each, its
+            parts by the numbers of their cables.
 
     Returns:
         Their lines and what is prescribed of their crossings; None where some end finds no
@@ -82,7 +108,8 @@ def laid(
         if line is None:
             return None
         lines.append(line)
-    known = _prescribed(cores, lines)
+    knots = [*ties, *([Part(k, c.points, c.over)] for k, c in enumerate(cores) if c.over)]
+    known = _prescribed(knots, lines)
     return None if known is None else (lines, known)
 
 
@@ -101,6 +128,15 @@ def fits(line: Floats, others: Sequence[Floats]) -> bool:
 def _apart(ends: Floats, rest: Floats) -> bool:
     gaps, _ = cKDTree(rest).query(ends)
     return bool(gaps.min() > CLEARANCE)
+
+
+def apart(rng: np.random.Generator, count: int) -> Floats:
+    """Return places for knots, apart from each other and well within the view, shape (N, 2)."""
+    while True:
+        places = rng.uniform(LOW + INSIDE, HIGH - INSIDE, (count, 2))
+        gaps = np.linalg.norm(places[:, None] - places[None], axis=2)
+        if (gaps + 2.0 * BETWEEN * np.eye(count) > BETWEEN).all():
+            return places
 
 
 def turned(rng: np.random.Generator, points: Floats) -> Floats:
@@ -123,55 +159,54 @@ def grown(rng: np.random.Generator, core: Floats, length: float) -> Floats:
 
 def _walk(rng: np.random.Generator, core: Floats, length: float) -> Floats:
     """Return waypoints that lead on from the last point of a core, and stay in the area."""
-    here, curvature = core[-1], 0.0
+    (x, y), curvature = core[-1], 0.0
     heading = float(np.arctan2(*(core[-1] - core[-2])[::-1]))
+    noise = rng.normal(0.0, CURVATURE * np.sqrt(1.0 - MEMORY**2), max(int(length / STEP), 1))
     points = []
-    for _ in range(max(int(length / STEP), 1)):
-        noise = rng.normal(0.0, CURVATURE * np.sqrt(1.0 - MEMORY**2))
-        curvature = MEMORY * curvature + noise + _inwards(here, heading)
-        curvature = float(np.clip(curvature, -1.0 / TIGHTEST, 1.0 / TIGHTEST))
+    for change in noise:
+        curvature = MEMORY * curvature + change + _inwards(x, y, heading)
+        curvature = min(max(curvature, -1.0 / TIGHTEST), 1.0 / TIGHTEST)
         heading += curvature * STEP
-        here = here + STEP * np.array([np.cos(heading), np.sin(heading)])
-        points.append(here)
+        x, y = x + STEP * math.cos(heading), y + STEP * math.sin(heading)
+        points.append((x, y))
     return np.array(points)
 
 
-def _inwards(here: Floats, heading: float) -> float:
+def _inwards(x: float, y: float, heading: float) -> float:
     """Return how much to turn more, so as not to leave the area."""
-    excess = np.clip((LOW + BORDER - here) / BORDER, 0.0, 1.0)
-    excess -= np.clip((here - HIGH + BORDER) / BORDER, 0.0, 1.0)
-    pull = float(np.linalg.norm(excess))
+    inwards = _excess(x, LOW[0], HIGH[0]), _excess(y, LOW[1], HIGH[1])
+    pull = math.hypot(*inwards)
     if pull == 0.0:
         return 0.0
-    wanted = float(np.arctan2(excess[1], excess[0]))
-    off = float((wanted - heading + np.pi) % (2.0 * np.pi) - np.pi)
-    return 0.25 * pull * float(np.sign(off)) * min(abs(off), 1.0)
+    wanted = math.atan2(inwards[1], inwards[0])
+    off = (wanted - heading + math.pi) % (2.0 * math.pi) - math.pi
+    return math.copysign(0.25 * pull * min(abs(off), 1.0), off)
 
 
-def _prescribed(cores: Sequence[Core], lines: Sequence[Floats]) -> Prescribed | None:
-    """Return over and under of all cores; None where lines do not cross as their cores should."""
+def _excess(at: float, low: float, high: float) -> float:
+    """Return how far a place is beyond the lower border, less how far beyond the upper one."""
+    below, above = (low + BORDER - at) / BORDER, (at - high + BORDER) / BORDER
+    return min(max(below, 0.0), 1.0) - min(max(above, 0.0), 1.0)
+
+
+def _prescribed(knots: Sequence[Sequence[Part]], lines: Sequence[Floats]) -> Prescribed | None:
+    """Return over and under of all knots; None where lines do not cross as the knots should."""
     xy, cable = _numbered(lines)
     starts = np.searchsorted(cable, np.arange(len(lines)))
     found = contact.crossings(xy, cable)
-    spans = [
-        starts[k] + span(core, line)
-        for k, (core, line) in enumerate(zip(cores, lines, strict=True))
-    ]
     pairs: dict[tuple[float, float], bool] = {}
-    for number, core in enumerate(cores):
-        if not core.over:
-            continue
-        other = number if core.other is None else core.other
-        mine = [pair for pair in found if _joins(pair, spans[number], spans[other])]
-        visits = sorted(
-            (float(at), (float(a), float(b)))
-            for a, b in mine
-            for at in ((a, b) if other == number else ((a,) if number < other else (b,)))
-        )
-        if len(visits) != len(core.over):
+    for parts in knots:
+        spans = [starts[part.cable] + span(part, lines[part.cable]) for part in parts]
+        within = sum((found >= low) & (found <= high) for low, high in spans) > 0
+        mine = [(float(a), float(b)) for a, b in found[within.all(axis=1)]]
+        visits = sorted((at, pair) for pair in mine for at in pair)
+        over = [on_top for part in parts for on_top in part.over]
+        if len(visits) != len(over):
             return None
-        for (at, pair), on_top in zip(visits, core.over, strict=True):
-            pairs[pair] = on_top if at == pair[0] else not on_top
+        on_top_at = {at: on_top for (at, _), on_top in zip(visits, over, strict=True)}
+        if any(on_top_at[a] == on_top_at[b] for a, b in mine):
+            return None
+        pairs |= {pair: on_top_at[pair[0]] for pair in mine}
     return Prescribed(pairs)
 
 
@@ -186,16 +221,7 @@ def _numbered(lines: Sequence[Floats]) -> tuple[Floats, NDArray[np.int64]]:
     return np.vstack(lines), np.repeat(np.arange(len(lines)), [len(line) for line in lines])
 
 
-def span(core: Core, line: Floats) -> NDArray[np.int64]:
-    """Return the nodes at which a core begins and ends in its line."""
+def span(core: Core | Part, line: Floats) -> NDArray[np.int64]:
+    """Return the nodes at which a core, or a part, begins and ends in its line."""
     ends = [int(np.linalg.norm(line - end, axis=1).argmin()) for end in core.points[[0, -1]]]
     return np.array(sorted(ends))
-
-
-def _joins(pair: Floats, one: NDArray[np.int64], other: NDArray[np.int64]) -> bool:
-    """Say whether a crossing lies within both spans, either way round."""
-    a, b = pair
-    return bool(
-        (one[0] <= a <= one[1] and other[0] <= b <= other[1])
-        or (one[0] <= b <= one[1] and other[0] <= a <= other[1])
-    )
