@@ -81,11 +81,13 @@ trees: setup ## Check and lint the trees
 docs: setup ## Build the documentation into site/; a warning is an error
 	$(BIN)/sphinx-build --quiet --fail-on-warning --keep-going -j auto docs site
 
-pages: setup ## Write the generated files anew: skills page, schema, URDF
+pages: setup ## Write the generated files anew: pages of skills and models, schema, URDF
 	$(BIN)/python -m executive.engine.schema
 	$(BIN)/python -m robots.descriptions
 	$(BIN)/python docs/skills_page.py > docs/skills.new
 	@mv docs/skills.new docs/skills.md
+	$(BIN)/python docs/models_page.py > docs/models.new
+	@mv docs/models.new docs/models.md
 
 freeze: setup ## Write the installed versions to constraints.txt
 	@{ sed '/^#/!d' constraints.txt; \

@@ -117,12 +117,13 @@ def test_messages_of_the_troubleshooting_page_are_in_the_code():
     assert [part for part in parts if part not in text] == []
 
 
-def test_generated_pages_are_current():
+@pytest.mark.parametrize("name", ["skills", "models"])
+def test_generated_pages_are_current(name):
     page = subprocess.run(
-        [sys.executable, "docs/skills_page.py"],
+        [sys.executable, f"docs/{name}_page.py"],
         cwd=ROOT, capture_output=True, text=True, check=True,
     ).stdout  # fmt: skip
-    assert (ROOT / "docs/skills.md").read_text(encoding="utf-8") == page, "say: make pages"
+    assert (ROOT / f"docs/{name}.md").read_text(encoding="utf-8") == page, "say: make pages"
 
 
 def options_of(*command: str) -> set[str]:
