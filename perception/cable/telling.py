@@ -192,7 +192,7 @@ def information(opinions: Sequence[Opinion], about: About = about_knottedness) -
         parts = [(one.weight, one.answers[side]) for one in heard if one.answers is not None]
         chance = math.fsum(w * math.fsum(part.values()) for w, part in parts) / share
         parts += [(chance * one.weight, one.knots) for one in opinions if one.answers is None]
-        told_bits -= _weighted_entropy(about(mixed(parts)))
+        told_bits -= _weighted_entropy(mixed(parts), about)
     return max(0.0, told_bits)
 
 
@@ -201,7 +201,9 @@ def entropy(shares: Chances) -> float:
     return -math.fsum(p * math.log2(p) for p in shares.values() if p > 0.0)
 
 
-def _weighted_entropy(shares: Chances) -> float:
-    """Return the entropy of shares that add up to less than 1, times what they add up to."""
-    total = math.fsum(shares.values())
-    return total * entropy({k: p / total for k, p in shares.items()}) if total > 0.0 else 0.0
+def _weighted_entropy(knots: Chances, about: About) -> float:
+    """Return the entropy of chances that add up to less than 1, times what they add up to."""
+    total = math.fsum(knots.values())
+    if total <= 0.0:
+        return 0.0
+    return total * entropy(about({name: p / total for name, p in knots.items()}))
