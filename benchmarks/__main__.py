@@ -25,6 +25,7 @@ BENCHMARKS = {
     "sight": ("benchmarks.sight", "the detector beside the classic mask and ends"),
     "crossings": ("benchmarks.crossings", "over and under at crossings, where it is known"),
     "knots": ("benchmarks.knots", "first knots found: loose, dense and fake, by four systems"),
+    "moves": ("benchmarks.moves", "plans of moves on a cable, and whether they come true"),
     "tracing": ("benchmarks.tracing", "tracers on drawn scenes with exact truth"),
     "untangling": ("benchmarks.untangling", "the untangling mission on fresh seeds"),
 }
