@@ -82,7 +82,7 @@ class Seen:
 
 
 def run(quick: bool, seed: int) -> Sequence[Row]:
-    """Judge 1,000 cables (60 when quick) each way, then ask about 200 (10) of them."""
+    """Judge 1,000 cables (60 when quick) each way, then ask about 200 (10) others."""
     count, asked = (60, 10) if quick else (1000, 200)
     rng = np.random.default_rng([SEED, seed])
     rows = []
@@ -90,7 +90,7 @@ def run(quick: bool, seed: int) -> Sequence[Row]:
         scenes = [look(rng, stated=stated) for _ in range(count)]
         rows += _calibration(name, scenes)
     rows += _asking([look(rng, stated=True) for _ in range(asked)], rng)
-    return [*rows, *_speed(rng, 5 if quick else 100)]
+    return [*rows, *_speed(rng, 5 if quick else 40)]
 
 
 def look(rng: np.random.Generator, *, stated: bool, crossings: int | None = None) -> Seen:
@@ -103,7 +103,7 @@ def look(rng: np.random.Generator, *, stated: bool, crossings: int | None = None
     """
     while True:
         strand = random_strand(rng, laid=bool(rng.random() < 0.5))
-        if crossings is None or len(strand.crossings) == crossings:
+        if crossings in (None, len(strand.crossings)):
             seen = _seen(rng, strand, stated=stated)
             if seen.knot != UNKNOWN:
                 return seen
