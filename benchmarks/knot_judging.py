@@ -69,14 +69,22 @@ def judged(scene: KnotScene, seen: CableScene) -> Failure | None:
 
 def _wrong(scene: KnotScene, seen: CableScene) -> Wrong | None:
     if not scene.is_knotted:
-        whole = any(trace.end is TraceEnd.ENDPOINT for trace in seen.traces)
         if seen.knots:
             return Wrong.FALSE
+        whole = any(_comes_through(scene, trace) for trace in seen.traces)
         return None if whole else Wrong.UNSEEN
     if not seen.knots:
         return Wrong.MISSED
     first = seen.knots[0]
     return None if _is_place(scene, seen.traces[first.trace], first, seen) else Wrong.PLACE
+
+
+def _comes_through(scene: KnotScene, trace: Trace) -> bool:
+    """Say whether a trace leads from one end of the cable to the other, by whatever way."""
+    ends_px = scene.nodes_from(trace.points_px[0])[[0, -1], :2]
+    gaps_px = np.linalg.norm(trace.points_px[[0, -1]] - ends_px, axis=1)
+    near = gaps_px < 2.0 * END_WIDTHS * scene.width_px
+    return trace.end is TraceEnd.ENDPOINT and bool(near.all())
 
 
 def _is_place(scene: KnotScene, trace: Trace, knot: Knot, seen: CableScene) -> bool:
