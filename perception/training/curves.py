@@ -186,6 +186,33 @@ def touching(rng: np.random.Generator, curve: Points) -> Points:
     return through(np.vstack([head[::-1], beside_it[::4], tail]), rng.uniform(0.6, 1.5))
 
 
+def hooked(rng: np.random.Generator, curve: Points) -> Points:
+    """Return a curve whose bight lies round some place of another one, as in knots of two.
+
+    It comes from the inner side of the other's bend, goes round it and back to where it came
+    from; whether both hold each other is up to which strands lie on top.
+    """
+    at = int(rng.uniform(0.1, 0.9) * (len(curve) - 9)) + 4
+    along = curve[at + 4] - curve[at - 4]
+    along /= max(float(np.linalg.norm(along)), 1e-9)
+    bend = curve[at + 4] + curve[at - 4] - 2.0 * curve[at]
+    away = np.array([-along[1], along[0]])
+    away *= -1.0 if away @ bend > 0.0 else 1.0
+    apart, reach, depth = rng.uniform(1.0, 3.0), rng.uniform(1.5, 4.0), rng.uniform(3.0, 9.0)
+    half = np.array([[-depth, 1.2], [-0.5 * depth, 1.0], [0.0, 1.0], [0.6 * reach, 0.9]])
+    bight = np.vstack([half, [[reach, 0.0]], half[::-1] * (1.0, -1.0)])
+    points = curve[at] + bight[:, :1] * away + apart * bight[:, 1:] * along
+    points += rng.normal(0.0, 0.2, points.shape)
+    extent = float(np.ptp(curve, axis=0).max()) + 10.0
+    head, tail = (
+        _leave(rng, points[a] - points[b], points[b], extent) for a, b in ((1, 0), (-2, -1))
+    )
+    return through(np.vstack([head[::-1], points, tail]), rng.uniform(0.4, 1.0))
+
+
+# Curves of a cable that has to do with another one.
+NEAR: tuple[Callable[[np.random.Generator, Points], Points], ...] = (touching, beside, hooked)
+
 FAMILIES: dict[str, Callable[[np.random.Generator, float], Points]] = {
     "random": random_curve,
     "parallel": parallel_curve,

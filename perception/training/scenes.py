@@ -24,6 +24,7 @@ MOST_NODES = 1400
 FEWEST_NODES, TRIES = 60, 6
 # Share of further cables that run along another one for a while.
 NEAR_ANOTHER = 0.45
+NEAR_SHARES = (0.5, 0.3, 0.2)
 SHARES = {
     "random": 0.12,
     "parallel": 0.14,
@@ -191,7 +192,7 @@ def _lines(rng: np.random.Generator, config: SceneConfig) -> list[Floats]:
     for _ in range(count):
         family = config.family or str(rng.choice(list(SHARES), p=list(SHARES.values())))
         if lines and rng.random() < NEAR_ANOTHER:
-            near = curves.touching if rng.random() < 0.6 else curves.beside
+            near = curves.NEAR[rng.choice(len(curves.NEAR), p=NEAR_SHARES)]
             line = near(rng, lines[-1])
         else:
             line = curves.FAMILIES[family](rng, config.extent)

@@ -15,6 +15,19 @@ def test_curves_have_even_steps(family):
     assert steps == pytest.approx(np.full(len(steps), curves.SPACING), rel=0.2)
 
 
+def test_a_hook_goes_round_a_place_of_the_other_cable():
+    rng = np.random.default_rng(8)
+    found = []
+    for _ in range(20):
+        line = curves.settled_curve(rng, 40.0)
+        both = np.vstack([line, hook := curves.hooked(rng, line)])
+        cable = np.repeat([0, 1], [len(line), len(hook)])
+        places = contact.crossings(both, cable)
+        found.append(((places < len(line)).sum(axis=1) == 1).sum())
+    # A bight passes under or over the other strand at both its legs.
+    assert np.mean(np.array(found) >= 2) > 0.8
+
+
 @pytest.mark.parametrize("near", [curves.beside, curves.touching])
 def test_a_curve_beside_another_comes_near_it(near):
     rng = np.random.default_rng(5)
