@@ -66,7 +66,8 @@ def intersections(a: Floats, b: Floats) -> tuple[Floats, Floats, NDArray[np.int6
         _left(along_b, a[i] - b[j]) != _left(along_b, a[i + 1] - b[j])
     )
     area = _cross(along_a, along_b)
-    apart = meet & (area != 0.0)
+    apart = np.flatnonzero(meet & (area != 0.0))
+    apart = apart[np.lexsort((j[apart], i[apart]))]
     i, j, area, along_a, along_b = i[apart], j[apart], area[apart], along_a[apart], along_b[apart]
     offset = b[j] - a[i]
     u = np.clip(_cross(offset, along_b) / area, 0.0, 1.0)
@@ -75,7 +76,7 @@ def intersections(a: Floats, b: Floats) -> tuple[Floats, Floats, NDArray[np.int6
 
 
 def _near_segments(a: Floats, b: Floats) -> tuple[Indices, Indices]:
-    """Return pairs of segments that may meet: those of blocks whose boxes overlap, in order."""
+    """Return pairs of segments that may meet: those of blocks whose boxes overlap."""
     low_a, high_a = _boxes(a)
     low_b, high_b = _boxes(b)
     overlap = (low_a[:, None] <= high_b[None]) & (low_b[None] <= high_a[:, None])
@@ -84,9 +85,7 @@ def _near_segments(a: Floats, b: Floats) -> tuple[Indices, Indices]:
     i = np.repeat(blocks_a[:, None] * BLOCK + within, BLOCK, axis=1).ravel()
     j = np.tile(blocks_b[:, None] * BLOCK + within, BLOCK).ravel()
     known = (i < len(a) - 1) & (j < len(b) - 1)
-    i, j = i[known], j[known]
-    order = np.lexsort((j, i))
-    return i[order], j[order]
+    return i[known], j[known]
 
 
 def _boxes(points: Floats) -> tuple[Floats, Floats]:

@@ -90,7 +90,7 @@ def reduction(diagram: Diagram) -> tuple[Step, ...]:
     shortened = reached(diagram, steps)
     if not shortened.visits:
         return tuple(steps)
-    knotted = is_told_by_alexander(shortened)
+    knotted = knot_proof(shortened) is not None
     return (*steps, *search(shortened, STATES_OF_KNOTS if knotted else STATES_OF_OTHERS))
 
 
@@ -103,20 +103,21 @@ def judge(diagram: Diagram, reduced: Diagram | None, crossings: int | None = Non
     return Verdict(state, proof, seen, len(reduced))
 
 
-def is_told_by_alexander(diagram: Diagram) -> bool:
-    """Say whether the Alexander polynomial proves a knot."""
-    return determinant(diagram) != 1 or alexander_polynomial(diagram) != (1,)
+def knot_proof(diagram: Diagram) -> Proof | None:
+    """Return which polynomial proves that a diagram is knotted; None where neither does."""
+    if determinant(diagram) != 1 or alexander_polynomial(diagram) != (1,):
+        return Proof.ALEXANDER
+    if len(diagram) > ALEXANDER_DECIDES_CROSSINGS and jones_polynomial(diagram) != ONE:
+        return Proof.JONES
+    return None
 
 
 def _decide(reduced: Diagram) -> tuple[Knottedness, Proof]:
     if not reduced.visits:
         return Knottedness.UNKNOT, Proof.MOVES
-    if is_told_by_alexander(reduced):
-        return Knottedness.KNOTTED, Proof.ALEXANDER
-    if len(reduced) <= ALEXANDER_DECIDES_CROSSINGS:
-        return Knottedness.UNKNOT, Proof.TABLES
-    if jones_polynomial(reduced) != ONE:
-        return Knottedness.KNOTTED, Proof.JONES
+    proof = knot_proof(reduced)
+    if proof is not None:
+        return Knottedness.KNOTTED, proof
     if len(reduced) <= JONES_DECIDES_CROSSINGS:
         return Knottedness.UNKNOT, Proof.TABLES
     return Knottedness.UNDECIDED, Proof.NONE
