@@ -23,6 +23,7 @@ from perception.cable.baselines.sgtm2 import Sgtm2
 from perception.cable.baselines.tusk import TuskConfig, TuskVision
 from perception.cable.classifiers.thesis import ThesisClassifier
 from perception.cable.interfaces import CableVision, Tracer
+from perception.cable.parts import SIGHT, TRACER
 from perception.cable.sight.sight import Sight
 from perception.cable.tracers.analytic import AnalyticTracer
 from perception.cable.types import CableScene, Endpoint, Points, Trace
@@ -77,10 +78,10 @@ class _Remembering:
 
 def systems() -> dict[str, System]:
     """Return all systems by the ends of their rows' names, ours first."""
-    greedy = _Remembering(GreedyTracer(FOLDER / "tracer_v2"))
+    greedy = _Remembering(GreedyTracer(FOLDER / TRACER))
     analytic = _Remembering(AnalyticTracer())
     classifier = ThesisClassifier(FOLDER / "thesis_crossing_v1")
-    sight = Sight(FOLDER / "sight_v1")
+    sight = Sight(FOLDER / SIGHT)
     tusk = TuskVision(ours(), greedy, classifier)
     uncancelled = TuskVision(ours(), greedy, classifier, TuskConfig(cancel=False))
     return {
