@@ -77,6 +77,7 @@ def drawn_scenes(seed: int, count: int, exact: bool = False) -> Iterator[Crossin
                 (crossing.under[0], _at(arcs[crossing.under[0]], crossing.under[1])),
             )
             for crossing in scene.crossings
+            if _in_view(scene.image, lines[crossing.over[0]][int(crossing.over[1])])
         )
         traces = tuple(_trace(rng, line, scene.width_px, exact) for line in lines)
         yield CrossingScene(scene.image, traces, scene.width_px, crossings)
@@ -115,6 +116,8 @@ def _with_truth(
     crossings = []
     for crossing in curve_crossings(np.column_stack([line_px, heights])).crossings:
         nodes = (crossing.first, crossing.second)
+        if not _in_view(image, line_px[int(crossing.first)]):
+            continue
         if abs(_at(heights, nodes[0]) - _at(heights, nodes[1])) < LEAST_HEIGHT_M:
             continue
         upper = 0 if crossing.first_over else 1
@@ -128,6 +131,11 @@ def _trace(rng: np.random.Generator, line_px: Floats, width_px: float, exact: bo
     points = resample(line_px, 0.5 * width_px)
     line = points if exact else erring_line(rng, points, width_px, ERRORS)
     return Trace(line, TraceEnd.ENDPOINT, 1.0)
+
+
+def _in_view(image: GreyImage, place_px: Floats) -> bool:
+    size = np.array(image.shape[::-1])
+    return bool((place_px > 0.0).all() and (place_px < size - 1.0).all())
 
 
 def _at(values: Points, node: float) -> float:

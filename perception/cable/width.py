@@ -21,7 +21,7 @@ BORDER = 0.5
 # A profile must rise above its own noise by this factor, and by so many grey values.
 CLEAR, LEAST = 4.0, 8.0
 # Lines are looked at in pieces of this length; a typical width takes at least so many.
-PIECE_PX, LEAST_PIECES, MOST_PIECES = 24.0, 4, 40
+PIECE_PX, LEAST_PIECES, MOST_PIECES = 24.0, 4, 20
 USUAL_PX = 6.0
 
 
