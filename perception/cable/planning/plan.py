@@ -10,8 +10,9 @@ import numpy as np
 
 from perception.cable.crossings import strand_of
 from perception.cable.grasp_points import GraspConfig
+from perception.cable.planning.finder import MoveFinder, MoveRules
 from perception.cable.planning.grasping import Grasp, Places
-from perception.cable.planning.moves import End, Move, MoveFinder, MoveKind, MoveRules
+from perception.cable.planning.moves import End, Move, MoveKind
 from perception.cable.planning.open_diagram import OpenDiagram, open_diagram
 from perception.cable.planning.search import Found, Problem, cheapest
 from perception.cable.topology import Knottedness, classify_diagram
