@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from perception.cable.mask import CableMask, radii
 from perception.cable.observation import Observation, observation_of
+from perception.cable.plug_ends import find_ends
 from perception.cable.plugs import Plug, plug_of
 from perception.cable.sight.seen import Seen
 from perception.cable.sight.sight import Sight
@@ -19,6 +20,10 @@ Bools = NDArray[np.bool_]
 
 # Smaller things, in squared cable widths, are neither cable nor connector.
 LEAST_CABLE_WIDTHS2, LEAST_PLUG_WIDTHS2 = 4.0, 1.5
+# Pieces thinner than this share of the cable's width are edges of something else.
+LEAST_WIDTH = 0.5
+# Ends nearer than this to each other are one [cable widths].
+SAME_END_WIDTHS = 4.0
 
 
 class SightEye:
@@ -37,8 +42,22 @@ class SightEye:
         return self._observed(image.tobytes(), image.shape)
 
     def endpoints(self, image: GreyImage) -> tuple[Endpoint, ...]:
-        """Return the ends of cables, the surest first."""
-        return self._sight.look(image).endpoints
+        """Return the ends of cables, the surest first.
+
+        Where the network is not sure of an end, a dead end of its mask tells of one.
+        """
+        seen, observation = self._sight.look(image), self.observe(image)
+        if observation is None:
+            return seen.endpoints
+        dead = find_ends(observation.mask, observation.graph)
+        known = np.array([end.position_px for end in seen.endpoints]).reshape(-1, 2)
+        apart_px = SAME_END_WIDTHS * observation.mask.width_px
+        more = [
+            end
+            for end in dead
+            if (np.linalg.norm(known - end.position_px, axis=1) > apart_px).all()
+        ]
+        return tuple(sorted([*seen.endpoints, *more], key=lambda end: -end.probability))
 
     def _observe(self, pixels: bytes, shape: tuple[int, int]) -> Observation | None:
         image = np.frombuffer(pixels, dtype=np.uint8).reshape(shape)
@@ -52,6 +71,7 @@ def mask_of(seen: Seen, image: GreyImage) -> CableMask | None:
     if seen.width_px is None:
         return None
     cable = _large(seen.cable_pixels, LEAST_CABLE_WIDTHS2 * seen.width_px**2)
+    cable = _wide(cable, LEAST_WIDTH * seen.width_px)
     if not cable.any() or cable.all():
         return None
     table = image[~cable].astype(float)
@@ -64,6 +84,17 @@ def _plugs(seen: Seen, mask: CableMask) -> list[Plug]:
     bodies = _large((seen.connector > 0.5) & mask.cable, LEAST_PLUG_WIDTHS2 * mask.width_px**2)
     count, labels = cv2.connectedComponents(bodies.astype(np.uint8))
     return [plug_of(np.asarray(labels) == label) for label in range(1, count)]
+
+
+def _wide(pixels: Bools, least_px: float) -> Bools:
+    """Return the connected pieces of some pixels that are wide enough."""
+    labels = np.asarray(cv2.connectedComponents(pixels.astype(np.uint8))[1])
+    count, radius_px = int(labels.max()) + 1, radii(pixels)
+    # In a strip of width w the distance to the border is w / 4 on average.
+    areas_px2 = np.maximum(np.bincount(labels.ravel(), minlength=count), 1)
+    mean_px = np.bincount(labels.ravel(), radius_px.ravel(), count) / areas_px2
+    kept: Bools = ((4.0 * (mean_px - 0.5) >= least_px) & (np.arange(count) > 0))[labels]
+    return kept
 
 
 def _large(pixels: Bools, least_px2: float) -> Bools:
