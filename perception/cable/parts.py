@@ -27,11 +27,10 @@ def _learned_eye() -> Eye:
 
 
 def _learned_tracer(eye: Eye) -> Tracer:
-    from perception.cable.tracers.both_ways import BothWaysTracer
-    from perception.cable.tracers.learned import LearnedTracer
+    from perception.cable.tracers.posterior import PosteriorTracer
     from perception.models.store import FOLDER
 
-    return AccountableTracer(BothWaysTracer(LearnedTracer(FOLDER / TRACER)), eye.observe)
+    return PosteriorTracer(FOLDER / TRACER, eye.observe)
 
 
 def _learned_classifier() -> CrossingClassifier:

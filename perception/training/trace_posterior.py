@@ -18,7 +18,7 @@ from scipy.optimize import minimize
 from perception.cable.following import followed_share
 from perception.cable.tracers.evidence import FEATURES, NONE_FEATURES, doubts, evidence
 from perception.cable.tracers.hypotheses import hypotheses
-from perception.cable.tracers.posterior import FILE, Weights, shares
+from perception.cable.tracers.posterior import FILE, Weights, shares, stacked
 from perception.cable.tracers.search import SearchConfig
 from perception.cable.tracers.steps import StepModel
 from perception.cable.tracers.survey import View, survey, view_from
@@ -39,6 +39,12 @@ HIDDEN = 1.5
 # What is known of ends: all of them, one of each cable, or only the start.
 KNOWN = {"all": 0.5, "one_each": 0.3, "start": 0.2}
 PRIOR = 0.02
+# What searches believe speaks for a trace, all else against it; doubt speaks for none.
+FOR, AGAINST, EITHER = (0.0, None), (None, 0.0), (None, None)
+SIGNS = [
+    *(FOR if name in {"there", "back"} else AGAINST for name in FEATURES),
+    *(EITHER if name == "one" else FOR for name in NONE_FEATURES),
+]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -91,7 +97,7 @@ def _scene_config(rng: np.random.Generator) -> SceneConfig:
 def _end_is_seen(scene: Scene, lines: Sequence[Floats], number: int) -> bool:
     """Say whether the first node of a line is in view and no strand lies near it."""
     end, limits = lines[number][0], np.array(scene.image.shape[::-1])
-    if len(lines[number]) < 3 * START_NODES:
+    if len(_in_view(scene, lines[number])) < 3 * START_NODES:
         return False
     if (end < 2.0 * scene.width_px).any() or (end > limits - 2.0 * scene.width_px).any():
         return False
@@ -101,13 +107,19 @@ def _end_is_seen(scene: Scene, lines: Sequence[Floats], number: int) -> bool:
     return bool(np.linalg.norm(others - end, axis=1).min() > HIDDEN * scene.width_px)
 
 
+def _in_view(scene: Scene, line: Floats) -> Floats:
+    """Return a line up to where it leaves the view."""
+    limits = np.array(scene.image.shape[::-1]) - 1.0
+    outside = np.flatnonzero(((line < 0.0) | (line > limits)).any(axis=1))
+    return line[: outside[0]] if len(outside) else line
+
+
 def _task(
     rng: np.random.Generator, scene: Scene, lines: Sequence[Floats], seen: Sequence[int]
 ) -> TraceTask:
     chosen = int(rng.choice(seen))
     line, half = lines[chosen], len(lines) // 2
-    limits = np.array(scene.image.shape[::-1]) - 1.0
-    outside = np.flatnonzero(((line < 0.0) | (line > limits)).any(axis=1))
+    visible = _in_view(scene, line)
     known = str(rng.choice(list(KNOWN), p=list(KNOWN.values())))
     ends = [
         _endpoint(lines[k])
@@ -118,9 +130,9 @@ def _task(
     error_px = rng.normal(0.0, START_ERROR * scene.width_px, first.shape)
     return TraceTask(
         scene,
-        line[: outside[0]] if len(outside) else line,
+        visible,
         scene.cables[chosen % half].width_px,
-        bool(len(outside)),
+        len(visible) < len(line),
         first + error_px,
         tuple(ends),
     )
@@ -168,24 +180,30 @@ def _view(rng: np.random.Generator, task: TraceTask) -> View | None:
 
 def fit(seen: Sequence[Example]) -> Weights:
     """Return the likeliest weights."""
-    count = len(FEATURES)
+    count, each = len(FEATURES), [_stacked(one) for one in seen]
 
-    def loss(flat: Floats) -> float:
-        judged = [shares(one.features, one.none, flat[:count], flat[count:]) for one in seen]
-        likelihoods = [believed_right(*pair) for pair in zip(judged, seen, strict=True)]
-        return PRIOR * float(flat @ flat) - float(np.log(likelihoods).sum())
+    def loss(flat: Floats) -> tuple[float, Floats]:
+        total, slope = PRIOR * float(flat @ flat), 2.0 * PRIOR * flat
+        for features, right in each:
+            beliefs = shares(features, flat)
+            believed = max(float(beliefs[right].sum()), 1e-12)
+            total -= float(np.log(believed))
+            slope += (beliefs - beliefs * right / believed) @ features
+        return total, slope
 
-    flat = minimize(loss, np.zeros(count + len(NONE_FEATURES)), method="L-BFGS-B").x.round(4)
+    first = np.zeros(count + len(NONE_FEATURES))
+    found = minimize(loss, first, jac=True, method="L-BFGS-B", bounds=SIGNS)
+    flat = found.x.round(4).tolist()
     return Weights(
-        trace=dict(zip(FEATURES, flat[:count].tolist(), strict=True)),
-        none=dict(zip(NONE_FEATURES, flat[count:].tolist(), strict=True)),
+        trace=dict(zip(FEATURES, flat[:count], strict=True)),
+        none=dict(zip(NONE_FEATURES, flat[count:], strict=True)),
     )
 
 
-def believed_right(beliefs: Floats, one: Example) -> float:
-    """Return the probability of all right answers; "none" is right where no trace is."""
+def _stacked(one: Example) -> tuple[Floats, NDArray[np.bool_]]:
+    """Return the features of all answers, "none" last, and which are right."""
     right = np.append(one.right, not one.right.any())
-    return max(float(beliefs[right].sum()), 1e-9)
+    return stacked(one.features, one.none), right
 
 
 def figures(seen: Sequence[Example], weights: Weights) -> dict[str, float]:

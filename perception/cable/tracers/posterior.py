@@ -11,7 +11,9 @@ from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path as FilePath
 
+import cv2
 import numpy as np
+from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict
 
 from executive.core.errors import InputError
@@ -46,8 +48,8 @@ class Weights(BaseModel):
 
     def probabilities(self, features: Floats, none: Floats) -> Floats:
         """Return the probability of each trace and, last, of none, shape (K + 1,)."""
-        for_trace = np.array([self.trace[name] for name in FEATURES])
-        return shares(features, none, for_trace, np.array([self.none[k] for k in NONE_FEATURES]))
+        weights = [*(self.trace[name] for name in FEATURES), *(self.none[k] for k in NONE_FEATURES)]
+        return shares(stacked(features, none), np.array(weights))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -82,7 +84,8 @@ class PosteriorTracer:
 
     Args:
         folder: A trained version with `posterior.json`.
-        observe: Gives mask and width of the cables; without it they are looked for at each start.
+        observe: Gives mask and width of the cables; where it gives none at a start, they are
+            looked for there.
         config: Settings of the searches.
 
     Raises:
@@ -126,11 +129,11 @@ class PosteriorTracer:
         return posterior_of(found, 0, self._weights)
 
     def _view(self, image: GreyImage, start_px: Points) -> View | None:
-        if self._observe is None:
+        """Return what is seen, by other means where the start is not on what was observed."""
+        observation = self._observe(image) if self._observe is not None else None
+        if observation is None or not _holds(observation.mask.cable, start_px):
             return view_from(image, start_px)
-        observation = self._observe(image)
-        mask = observation.mask if observation is not None else None
-        return View(mask.width_px, mask.cable) if mask is not None else None
+        return View(observation.mask.width_px, observation.mask.cable)
 
     def _survey_ends(
         self, pixels: bytes, shape: tuple[int, int], endpoints: tuple[Endpoint, ...]
@@ -142,6 +145,14 @@ class PosteriorTracer:
         if view is None:
             return None
         return survey(self._model, self._config, image, view, starts, endpoints)
+
+
+def _holds(cable: NDArray[np.bool_], points_px: Points) -> bool:
+    """Say whether at least half of some points lie on a mask or beside it."""
+    limits = np.array(cable.shape[::-1]) - 1
+    columns, rows = np.rint(points_px).astype(int).clip(0, limits).T
+    near = cv2.dilate(cable.astype(np.uint8), np.ones((3, 3), np.uint8))
+    return float(near[rows, columns].mean()) >= 0.5
 
 
 def _end_at(start_px: Points, endpoints: Sequence[Endpoint], width_px: float) -> int | None:
@@ -162,9 +173,16 @@ def posterior_of(found: Survey, start: int, weights: Weights) -> TracePosterior:
     return TracePosterior(traces, float(beliefs[-1]))
 
 
-def shares(features: Floats, none: Floats, for_trace: Floats, for_none: Floats) -> Floats:
-    """Return probabilities by the weights of a trace's features and of those of none."""
-    odds = np.append(features @ for_trace, none @ for_none)
+def stacked(features: Floats, none: Floats) -> Floats:
+    """Return the features of traces and, last, of none of them as rows of one table."""
+    table = np.zeros((len(features) + 1, features.shape[1] + len(none)))
+    table[:-1, : features.shape[1]], table[-1, features.shape[1] :] = features, none
+    return table
+
+
+def shares(table: Floats, weights: Floats) -> Floats:
+    """Return the probability of each row of a table of features."""
+    odds = table @ weights
     odds = np.exp(odds - odds.max())
     parts: Floats = odds / odds.sum()
     return parts
