@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, TypeVar
+from typing import TYPE_CHECKING, Annotated, TypeVar, cast
 
 import typer
 
@@ -15,7 +15,7 @@ from perception.training.tasks import AFTER, TASKS
 if TYPE_CHECKING:
     from pydantic import ValidationError
 
-    from perception.training.dataset import DataSettings
+    from perception.training.dataset import DataSettings, Renderer
     from perception.training.recipes import VersionRecipe
 
 train = typer.Typer(
@@ -47,6 +47,9 @@ def data(
     width: Annotated[
         str, typer.Option(metavar="PX[-PX]", help="Width of cables, in pixels.")
     ] = "4-14",
+    renderer: Annotated[
+        str, typer.Option(help="What shows them: own, or blender, which takes seconds an image.")
+    ] = "own",
     crops: Annotated[
         str | None,
         typer.Option(metavar="TASK", help="Samples of a network as arrays instead of images."),
@@ -59,6 +62,7 @@ def data(
         return
     from pydantic import ValidationError
 
+    from perception.training.blender import need_blender
     from perception.training.dataset import INDEX, DataSettings
 
     try:
@@ -70,9 +74,12 @@ def data(
             cables=_numbers("--cables", cables, "-", "2 or 1-3", int),
             size_px=None if size is None else _numbers("--size", size, "x", "640x480", int),
             width_px=_numbers("--width", width, "-", "6 or 4-14", float),
+            renderer=cast("Renderer", renderer),
         )
     except ValidationError as error:
         raise InputError(_faults(error)) from None
+    if settings.renderer == "blender":
+        need_blender()
     begin(out, resume, INDEX)
     with interruptible(out):
         _draw_images(settings, out)

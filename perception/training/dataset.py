@@ -12,6 +12,7 @@ from pydantic import BaseModel, ConfigDict, Field, NonNegativeInt, PositiveInt, 
 
 from executive.core.errors import InputError
 from executive.core.registry import closest
+from perception.training.blender import shown_by_blender
 from perception.training.curves import FAMILIES
 from perception.training.drawn import DrawnScene, describe_scene
 from perception.training.looks import STYLES
@@ -22,6 +23,7 @@ INDEX, SHEET, TRUTH_SHEET = "data.json", "sheet.png", "truth.png"
 ON_SHEET = 20
 # Scenes with fewer widths each way have no room for a cable.
 LEAST_EXTENT, LEAST_PX = 12.0, 32
+Renderer = Literal["own", "blender"]
 Count = Annotated[int, Field(ge=1, le=3)]
 
 
@@ -37,6 +39,7 @@ class DataSettings(BaseModel):
         cables: Fewest and most cables in an image.
         size_px: Width and height of images, none for square ones that suit the cable.
         width_px: Narrowest and widest cable.
+        renderer: What shows them: our own, or Blender.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -52,6 +55,7 @@ class DataSettings(BaseModel):
         4.0,
         14.0,
     )
+    renderer: Renderer = "own"
 
     @model_validator(mode="after")
     def _fits(self) -> Self:
@@ -85,11 +89,12 @@ def draw_image(settings: DataSettings, number: int) -> Scene:
         style=settings.style,
         cables=int(rng.integers(settings.cables[0], settings.cables[1] + 1)),
     )
-    if settings.size_px is None:
-        return make_scene(rng, chosen)
-    columns, rows = settings.size_px
-    extent = max(columns, rows) / width_px
-    return make_scene(rng, replace(chosen, size_px=(rows, columns), extent=extent))
+    if settings.size_px is not None:
+        columns, rows = settings.size_px
+        extent = max(columns, rows) / width_px
+        chosen = replace(chosen, size_px=(rows, columns), extent=extent)
+    scene = make_scene(rng, chosen)
+    return shown_by_blender(rng, scene) if settings.renderer == "blender" else scene
 
 
 def write_images(settings: DataSettings, folder: Path) -> Iterator[int]:

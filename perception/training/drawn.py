@@ -68,6 +68,7 @@ class DrawnEnd(_Document):
         inwards: Unit vector into the cable.
         connector: What it carries there, null for a bare end.
         outline_px: Corners of all parts of the connector.
+        covered: Whether strands lie over the connector, not under it.
         visible: Whether no strand lies over it.
     """
 
@@ -76,6 +77,7 @@ class DrawnEnd(_Document):
     inwards: Point
     connector: Kind | None
     outline_px: list[list[Point]]
+    covered: bool
     visible: bool
 
 
@@ -135,6 +137,7 @@ def describe_scene(scene: Scene, image: str) -> DrawnScene:
                 inwards=_points(truth.inwards[None, number])[0],
                 connector=None if plug is None else plug.kind,
                 outline_px=[] if plug is None else [_points(part) for part in plug.outlines_px],
+                covered=plug is not None and plug.covered,
                 visible=bool(truth.visible[number]),
             )
             for number, plug in enumerate(carried)

@@ -37,16 +37,20 @@ def draw_truth_over(image: Bytes, scene: DrawnScene) -> Bytes:
 
 def contact_sheet(tiles: Sequence[Bytes]) -> Bytes:
     """Return images of any size side by side, grey ones or in colour; shape (H, W, 3)."""
-    rows = -(-len(tiles) // COLUMNS)
-    step = TILE_PX + MARGIN_PX
-    sheet = np.full((rows * step, min(len(tiles), COLUMNS) * step, 3), 128, np.uint8)
-    for number, tile in enumerate(tiles):
-        row, column = divmod(number, COLUMNS)
-        scale = TILE_PX / max(tile.shape[:2])
-        how = cv2.INTER_AREA if scale < 1.0 else cv2.INTER_NEAREST
-        small = np.asarray(cv2.resize(tile, None, fx=scale, fy=scale, interpolation=how), np.uint8)
-        small = small[:TILE_PX, :TILE_PX]
-        height, width = small.shape[:2]
-        y, x = row * step, column * step
-        sheet[y : y + height, x : x + width] = small if small.ndim == 3 else small[:, :, None]
+    small = [_fitted(tile) for tile in tiles]
+    rows = -(-len(small) // COLUMNS)
+    down = max(tile.shape[0] for tile in small) + MARGIN_PX
+    right = max(tile.shape[1] for tile in small) + MARGIN_PX
+    sheet = np.full((rows * down, min(len(small), COLUMNS) * right, 3), 128, np.uint8)
+    for number, tile in enumerate(small):
+        y, x = down * (number // COLUMNS), right * (number % COLUMNS)
+        height, width = tile.shape[:2]
+        sheet[y : y + height, x : x + width] = tile if tile.ndim == 3 else tile[:, :, None]
     return sheet
+
+
+def _fitted(tile: Bytes) -> Bytes:
+    """Return an image of the size of a tile."""
+    scale = TILE_PX / max(tile.shape[:2])
+    how = cv2.INTER_AREA if scale < 1.0 else cv2.INTER_NEAREST
+    return np.asarray(cv2.resize(tile, None, fx=scale, fy=scale, interpolation=how), np.uint8)

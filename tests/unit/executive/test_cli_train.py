@@ -62,6 +62,7 @@ def test_data_that_were_stopped_go_on_to_the_same(tmp_path, monkeypatch):
         (["--cables", "two"], "--cables: got 'two'; expected such as 2 or 1-3"),
         (["--size", "60x60"], "--size: got 60x60; expected at least 168 px each way"),
         (["--width", "14-4"], "--width: got 14-4; expected the smaller one first"),
+        (["--renderer", "povray"], "--renderer: .*'own' or 'blender'; got 'povray'"),
         (["--crops", "tracr"], "--crops: unknown; got 'tracr'; did you mean 'tracer'"),
         (["--resume"], "--resume: .* has no data.json to go on with"),
     ],
