@@ -35,7 +35,10 @@ PULLS, FEWER_PULLS = 4, 2
 # The rest are drawn outwards, which pulls knots tight.
 INWARDS = 0.65
 AREA = Area((-0.45, -0.32), (0.45, 0.32))
-RULES = ConfigurationRules(length_m=2.4, diameter_m=(0.06, 0.2), most_crossings=8, area=AREA)
+# They are pulled about afterwards and need not have come to a full rest.
+RULES = ConfigurationRules(
+    length_m=2.4, diameter_m=(0.06, 0.2), most_crossings=8, area=AREA, still_m=np.inf
+)
 DENSE = replace(RULES, diameter_m=(0.05, 0.12), most_crossings=10)
 LOOSE = replace(RULES, diameter_m=(0.2, 0.4), most_crossings=9, length_m=3.0)
 

@@ -37,6 +37,8 @@ class ConfigurationRules:
         most_crossings: Most crossings of the whole cable; where the knot alone takes up as many,
             there may be one more than it has.
         shortest_end_m: Least length of a free end.
+        still_m: No node moves farther once the cable is let go again. Tight knots, whose strands
+            press upon each other, are let go several times until this holds.
     """
 
     length_m: float = 3.0
@@ -45,6 +47,7 @@ class ConfigurationRules:
     area: Area = REACHABLE
     most_crossings: int = 6
     shortest_end_m: float = 0.25
+    still_m: float = 1.5e-3
 
 
 # Springing back, a cable moves by about this much until it rests.
@@ -53,6 +56,8 @@ SPRING_BACK_M = 0.012
 LIFT_RADII = 2.2
 # Crossings of a knot are at least so many nodes apart: over and under take turns in between.
 NODES_APART = 2.2
+# How often a cable that has settled is let go again at most, and for how long.
+SETTLINGS, LET_GO_S = 8, 1.0
 # How many plans are drawn before giving up: most get stuck, and cost a few hundredths of a second.
 PLANS = 500
 
@@ -86,7 +91,7 @@ def starting_configuration(
     for _ in range(PLANS):
         plan = draw_plan(knot, rng, parameters, rules, fake)
         if plan is not None and is_tied(plan, knot, fake):
-            nodes_m = settle(plan, parameters)
+            nodes_m = _at_rest(settle(plan, parameters), parameters, rules)
             if is_tied(nodes_m, knot, fake) and _follows(nodes_m, knot, rules):
                 return nodes_m
     raise InputError(
@@ -133,6 +138,19 @@ def settle(nodes_m: Floats, parameters: RodParameters, longest_s: float = 6.0) -
         if rod.at_rest:
             break
     return rod.positions_m.copy()
+
+
+def _at_rest(nodes_m: Floats, parameters: RodParameters, rules: ConfigurationRules) -> Floats:
+    """Return where a cable lies that has settled, and stays once it is let go again."""
+    for _ in range(SETTLINGS):
+        if not np.isfinite(rules.still_m):
+            break
+        rod = Rod(nodes_m, parameters)
+        rod.advance(LET_GO_S)
+        if float(np.abs(rod.positions_m - nodes_m).max()) < rules.still_m:
+            break
+        nodes_m = rod.positions_m.copy()
+    return nodes_m
 
 
 def _shrunk(area: Area, margin_m: float) -> Area:

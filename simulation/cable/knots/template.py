@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -81,11 +82,10 @@ class KnotTemplate:
         Args:
             over: For each visit whether it runs on top, where not as in the template.
         """
-        curve = self.curve_m(1.0, 1.0 / POINTS)
-        flat = curve_crossings(np.column_stack([curve, np.zeros(len(curve))]))
+        flat = _flat(self)
         first_over = self.first_over(flat.crossings, over)
         return Strand(
-            curve,
+            flat.points,
             tuple(
                 replace(crossing, first_over=on_top)
                 for crossing, on_top in zip(flat.crossings, first_over, strict=True)
@@ -95,3 +95,10 @@ class KnotTemplate:
     def diagram(self, over: Sequence[bool] = ()) -> Diagram:
         """Return its diagram, its ends joined over everything; `over` as for `strand`."""
         return close_over(self.strand(over))
+
+
+@cache
+def _flat(template: KnotTemplate) -> Strand:
+    """Return a template's curve of diameter 1 and where it crosses itself, over or under."""
+    curve = template.curve_m(1.0, 1.0 / POINTS)
+    return curve_crossings(np.column_stack([curve, np.zeros(len(curve))]))
