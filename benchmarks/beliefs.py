@@ -11,7 +11,8 @@ wrongly just as often as their probabilities say. That may be meant in two ways:
   crossings by chance, so that beliefs that take crossings as independent may be off.
 
 Then questions are answered truly, one at a time, until P(knotted) is beyond 0.95 either way:
-the one that tells most, the crossing that is least sure, or any crossing.
+the one that tells most, the crossing that is least sure, or any crossing. Looking one question
+ahead is greedy: where only two answers together decide, neither tells much by itself.
 """
 
 import time
