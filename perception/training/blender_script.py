@@ -6,7 +6,7 @@ the image are those of the truth.
 
 import json
 import sys
-from math import cos, sin
+from math import cos, pi, sin
 from pathlib import Path
 from typing import Any
 
@@ -107,7 +107,8 @@ def _add_table(job: Any) -> None:
 def _add_light(job: Any) -> None:
     round_rad, slant_rad = job["sun_rad"]
     sun = bpy.data.lights.new("sun", "SUN")
-    sun.energy, sun.angle = 3.1 * (1.0 - 0.5 * job["fill"]), job["sun_size_rad"]
+    # Both lights together make white paper just white.
+    sun.energy, sun.angle = pi * (1.0 - job["fill"]), job["sun_size_rad"]
     lamp = _add("sun", sun)
     lamp.rotation_euler = (slant_rad * cos(round_rad), slant_rad * sin(round_rad), 0.0)
     world = bpy.data.worlds.new("world")

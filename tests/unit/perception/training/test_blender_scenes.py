@@ -30,4 +30,4 @@ def test_blender_shows_the_cable_where_the_truth_says():
     inside = np.all((cable.points_px > 1) & (cable.points_px < len(image) - 2), axis=1)
     columns, rows = np.round(cable.points_px[inside]).astype(int).T
     on_cable, table = np.median(image[rows, columns]), np.median(image)
-    assert abs(on_cable - table) > 15.0
+    assert abs(on_cable - table) > 10.0
