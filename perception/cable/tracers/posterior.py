@@ -23,7 +23,7 @@ from perception.cable.tracers.hypotheses import Hypothesis, hypotheses
 from perception.cable.tracers.search import SearchConfig
 from perception.cable.tracers.steps import StepModel
 from perception.cable.tracers.survey import Survey, View, survey, view_from
-from perception.cable.types import Endpoint, Points, Trace
+from perception.cable.types import Endpoint, Points, Trace, TraceEnd
 from perception.camera import GreyImage
 from perception.models.frames import Floats
 
@@ -31,6 +31,8 @@ FILE = "posterior.json"
 Observe = Callable[[GreyImage], Observation | None]
 # A start with no more points than this at a known end tells nothing more than that end.
 MOST_AT_END = 2
+# With less belief in the best trace than this, other widths of the cable are tried.
+DOUBTFUL, OTHER_WIDTHS = 0.5, (1.5, 0.7)
 
 
 class Weights(BaseModel):
@@ -99,7 +101,7 @@ class PosteriorTracer:
         self._model = StepModel(folder)
         self._observe, self._config = observe, config or SearchConfig()
         # Traces from all ends of one image come from one survey.
-        self._surveyed = lru_cache(maxsize=2)(self._survey_ends)
+        self._surveyed = lru_cache(maxsize=4)(self._survey_ends)
 
     def trace(
         self, image: GreyImage, start_px: Points, endpoints: Sequence[Endpoint]
@@ -116,14 +118,27 @@ class PosteriorTracer:
     def posterior(
         self, image: GreyImage, start_px: Points, endpoints: Sequence[Endpoint]
     ) -> TracePosterior:
-        """Return all beliefs about the cable that starts at `start_px`; see `Tracer.trace`."""
+        """Return all beliefs about the cable that starts at `start_px`; see `Tracer.trace`.
+
+        Where a trace is lost or nothing is believed in, cables may be wider or thinner than they
+        seem, so that is tried as well.
+        """
         start_px = np.atleast_2d(np.asarray(start_px, dtype=float))
         view = self._view(image, start_px)
         if view is None:
             return NOTHING
+        first = self._asked(image, start_px, endpoints, view)
+        if not _is_doubtful(first):
+            return first
+        again = [self._asked(image, start_px, endpoints, view.wider(by)) for by in OTHER_WIDTHS]
+        return max([first, *again], key=_best_belief)
+
+    def _asked(
+        self, image: GreyImage, start_px: Points, endpoints: Sequence[Endpoint], view: View
+    ) -> TracePosterior:
         number = _end_at(start_px, endpoints, view.width_px)
         if number is not None:
-            found = self._surveyed(image.tobytes(), image.shape, tuple(endpoints))
+            found = self._surveyed(image.tobytes(), image.shape, tuple(endpoints), view.scale)
             return posterior_of(found, number, self._weights) if found else NOTHING
         found = survey(self._model, self._config, image, view, [start_px], endpoints)
         return posterior_of(found, 0, self._weights)
@@ -136,7 +151,11 @@ class PosteriorTracer:
         return View(observation.mask.width_px, observation.mask.cable)
 
     def _survey_ends(
-        self, pixels: bytes, shape: tuple[int, int], endpoints: tuple[Endpoint, ...]
+        self,
+        pixels: bytes,
+        shape: tuple[int, int],
+        endpoints: tuple[Endpoint, ...],
+        scale: float,
     ) -> Survey | None:
         """Follow cables from all ends; endpoints are told apart by being the same objects."""
         image = np.frombuffer(pixels, dtype=np.uint8).reshape(shape)
@@ -144,7 +163,18 @@ class PosteriorTracer:
         view = self._view(image, starts[0])
         if view is None:
             return None
-        return survey(self._model, self._config, image, view, starts, endpoints)
+        return survey(self._model, self._config, image, view.wider(scale), starts, endpoints)
+
+
+def _best_belief(posterior: TracePosterior) -> float:
+    return posterior.best.probability if posterior.best is not None else 0.0
+
+
+def _is_doubtful(posterior: TracePosterior) -> bool:
+    best = posterior.best
+    if best is None or best.end in {TraceEnd.LOST, TraceEnd.RETRACE}:
+        return True
+    return best.probability < DOUBTFUL
 
 
 def _holds(cable: NDArray[np.bool_], points_px: Points) -> bool:

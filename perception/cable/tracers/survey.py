@@ -37,10 +37,16 @@ class View:
     Attributes:
         width_px: Width of the cables.
         cable: Which pixels show cable or connector, shape (height, width).
+        scale: That width over the one that was measured.
     """
 
     width_px: float
     cable: Bools
+    scale: float = 1.0
+
+    def wider(self, by: float) -> "View":
+        """Return the same with cables so many times as wide."""
+        return View(by * self.width_px, self.cable, by * self.scale)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
