@@ -20,7 +20,7 @@ from benchmarks.harness import Row, median, share
 from benchmarks.photographs import LabelledImage, labelled_images
 from perception.cable.classifiers.continuity import ContinuityClassifier
 from perception.cable.classifiers.edges import EdgeClassifier
-from perception.cable.classifiers.ribbons import RibbonClassifier
+from perception.cable.classifiers.learned import LearnedClassifier
 from perception.cable.classifiers.thesis import ThesisClassifier
 from perception.cable.interfaces import CrossingClassifier
 from perception.cable.observation import observe
@@ -32,7 +32,7 @@ from perception.models.store import FOLDER
 from perception.training.calibration import expected_calibration_error, selective_error
 
 CLASSIFIERS: dict[str, Callable[[], CrossingClassifier]] = {
-    "": lambda: RibbonClassifier(FOLDER / "crossing_v2"),
+    "": lambda: LearnedClassifier(FOLDER / "crossing_v2"),
     "_edges": EdgeClassifier,
     "_continuity": ContinuityClassifier,
     "_thesis": lambda: ThesisClassifier(FOLDER / "thesis_crossing_v1"),

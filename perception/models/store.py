@@ -10,7 +10,6 @@ from torch import nn
 from torch.nn.utils.fusion import fuse_conv_bn_eval
 
 from executive.core.errors import InputError
-from perception.models.crossing_net import CrossingNet
 from perception.models.crossing_ribbon_net import CrossingRibbonNet
 from perception.models.sight_net import SightNet
 from perception.models.thesis_crossing_net import ThesisCrossingNet
@@ -19,7 +18,6 @@ from perception.models.tracer_net import TracerNet
 FOLDER = Path(__file__).parent
 NETWORKS: dict[str, Callable[[Sequence[int], float], nn.Module]] = {
     "tracer": TracerNet,
-    "crossing": lambda widths, _: CrossingNet(widths),
     "sight": lambda widths, _: SightNet(widths),
     "crossing_ribbons": lambda widths, _: CrossingRibbonNet(widths),
     "thesis_crossing": lambda widths, _: ThesisCrossingNet(widths),

@@ -18,7 +18,7 @@ from perception.training.crossing_samples import Meeting, meetings
 from perception.training.loop import Batch
 from perception.training.scenes import Scene, SceneConfig, make_scene
 
-MIXED = 2048
+MIXED = 512
 # Small scenes have more crossings for their pixels.
 EXTENTS = (28.0, 46.0)
 SCALE_ERROR = 0.18
@@ -60,7 +60,7 @@ class CrossingTask:
                 ribbons.extend(drawn)
                 real.extend(meeting.real for meeting in found)
             number += stride
-            while len(ribbons) >= MIXED:
+            while len(ribbons) >= MIXED * self._times:
                 order = rng.permutation(len(ribbons))
                 ribbons, real = [ribbons[k] for k in order], [real[k] for k in order]
                 yield (

@@ -1,26 +1,41 @@
 """Over and under by a network that sees both strands of a crossing at once."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 import torch
 
+from perception.cable.classifiers.passes import StrandPass, passes_of, path_through
 from perception.cable.crossings import CrossingSite, decide, find_sites
-from perception.cable.polyline import arc_lengths, point_at
 from perception.cable.types import Crossing, Points, Trace
-from perception.cable.width import mask_under
+from perception.cable.width import width_under
 from perception.camera import GreyImage
-from perception.models.crossing_crop import REACH, WIDTH, make_views
-from perception.models.frames import Crop, ScaledImage, scale_image
+from perception.models.crossing_ribbon import REACH, make_ribbons, scale_for_ribbons
 from perception.models.store import load_network, read_config
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class JudgedSite:
+    """What a network says of a place where traces cross.
+
+    Attributes:
+        site: The place.
+        a_over: Belief that strand a is on top, if strands cross there.
+        real: Belief that strands cross there; else traces go over from one strand to the other.
+    """
+
+    site: CrossingSite
+    a_over: float
+    real: float
 
 
 class LearnedClassifier:
     """Implements `CrossingClassifier` with a trained network.
 
-    P(a over b) = 1 - P(b over a) by construction, see `CrossingNet`; the temperature of the
-    trained version makes beliefs as high as answers are often right.
+    P(a over b) = 1 - P(b over a) by construction, see `CrossingRibbonNet`; the temperature of
+    the trained version makes beliefs as high as answers are often right.
 
     Args:
         folder: A trained version, see `perception.models.store`.
@@ -32,35 +47,30 @@ class LearnedClassifier:
 
     def classify(self, image: GreyImage, traces: Sequence[Trace]) -> tuple[Crossing, ...]:
         """Return every crossing; see `CrossingClassifier.classify`."""
+        return tuple(decide(judged.site, judged.a_over) for judged in self.judge(image, traces))
+
+    def judge(self, image: GreyImage, traces: Sequence[Trace]) -> tuple[JudgedSite, ...]:
+        """Return both beliefs about every crossing of the traces, all in one pass."""
         sites = find_sites(traces)
         if not sites:
             return ()
-        on_cable_px = np.vstack([trace.points_px for trace in traces])
-        mask = mask_under(image, on_cable_px)
-        if mask is None:
-            return ()
-        scaled = scale_image(image, mask.width_px, WIDTH)
-        views = np.stack([_views(scaled, site, traces) for site in sites])
-        believed = self._believe(torch.from_numpy(views))
-        return tuple(decide(site, belief) for site, belief in zip(sites, believed, strict=True))
+        scaled = scale_for_ribbons(image, width_under(image, [trace.points_px for trace in traces]))
+        paths = np.array(
+            [[_path(strand, scaled.scale) for strand in passes_of(site, traces)] for site in sites]
+        )
+        beliefs = self._beliefs(torch.from_numpy(make_ribbons(scaled, paths)))
+        return tuple(
+            JudgedSite(site, a_over, real)
+            for site, (a_over, real) in zip(sites, beliefs, strict=True)
+        )
 
     @torch.inference_mode()
-    def _believe(self, views: torch.Tensor) -> list[float]:
-        beliefs: list[float] = torch.sigmoid(self._network(views) / self._temperature).tolist()
+    def _beliefs(self, ribbons: torch.Tensor) -> list[tuple[float, float]]:
+        logits = self._network(ribbons).double()
+        logits[:, 0] /= self._temperature
+        beliefs: list[tuple[float, float]] = torch.sigmoid(logits).tolist()
         return beliefs
 
 
-def _views(scaled: ScaledImage, site: CrossingSite, traces: Sequence[Trace]) -> Crop:
-    a, b = (
-        _piece(traces[trace].points_px, arc, REACH / scaled.scale)
-        for trace, arc in zip(site.traces, site.arcs, strict=True)
-    )
-    return make_views(scaled, scaled.into(site.position_px), (scaled.into(a), scaled.into(b)))
-
-
-def _piece(points_px: Points, arc: float, reach_px: float) -> Points:
-    """Return the part of a trace within `reach_px` of an arc position."""
-    arcs = arc_lengths(points_px)
-    at_px = arc * arcs[-1]
-    places = np.linspace(max(at_px - reach_px, 0.0), min(at_px + reach_px, float(arcs[-1])), 13)
-    return point_at(points_px, arcs, places)
+def _path(strand: StrandPass, scale: float) -> Points:
+    return (path_through(strand, REACH / scale, 1.0 / scale) + 0.5) * scale - 0.5

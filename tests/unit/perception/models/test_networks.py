@@ -6,7 +6,6 @@ torch = pytest.importorskip("torch")
 safetensors = pytest.importorskip("safetensors.torch")
 
 from executive.core.errors import InputError  # noqa: E402  # after the skip
-from perception.models.crossing_net import CrossingNet  # noqa: E402
 from perception.models.crossing_ribbon import ACROSS, ALONG  # noqa: E402
 from perception.models.crossing_ribbon_net import CrossingRibbonNet  # noqa: E402
 from perception.models.store import load_network  # noqa: E402
@@ -19,13 +18,6 @@ WIDTHS = (8, 8, 16, 16)
 def _saved(folder, name, network):
     safetensors.save_file(network.state_dict(), folder / "weights.safetensors")
     (folder / "config.json").write_text(json.dumps({"network": name, "widths": WIDTHS}))
-
-
-def test_exchanging_strands_changes_the_sign():
-    torch.manual_seed(1)
-    network = CrossingNet(WIDTHS).eval()
-    views = torch.randn(5, 2, 3, 32, 32)
-    assert torch.allclose(network(views), -network(views.flip(1)), atol=1e-5)
 
 
 def test_exchanging_ribbons_changes_one_sign_and_nothing_else():
@@ -50,8 +42,8 @@ def test_loading_folds_normalisation_without_changing_answers(tmp_path):
 
 
 def test_an_unknown_network_is_named(tmp_path):
-    _saved(tmp_path, "oracle", CrossingNet(WIDTHS))
-    with pytest.raises(InputError, match=r"'oracle'.*known: crossing, .*tracer"):
+    _saved(tmp_path, "oracle", CrossingRibbonNet(WIDTHS))
+    with pytest.raises(InputError, match=r"'oracle'.*known: crossing_ribbons, .*tracer"):
         load_network(tmp_path)
 
 
