@@ -1,8 +1,8 @@
 """Scenes as Blender's path tracer shows them: a second look at the same truth.
 
 Blender runs in a process of its own (`perception.training.blender_script`), which alone loads
-the package `bpy`. That package is under the GPL and never comes by itself: the extra `blender`
-asks for it.
+the package `bpy`. That package is under the GPL and asks for an older NumPy than the project
+does, which what is used of it does without; so it is no extra, and comes only by hand.
 """
 
 import subprocess
@@ -22,6 +22,7 @@ from perception.training.looks import draw_look
 from perception.training.photograph import photograph
 from perception.training.scenes import Scene
 
+PACKAGE = "bpy==4.5.15"
 SAMPLES = 12
 SCRIPT = "perception.training.blender_script"
 
@@ -64,8 +65,8 @@ def need_blender() -> None:
     """
     if find_spec("bpy") is None:
         raise InputError(
-            "--renderer blender: needs bpy, which the extra `blender` brings; "
-            "try pip install 'cellwright[blender]', or --renderer own"
+            "--renderer blender: needs bpy, which is not installed; "
+            f"try pip install --no-deps {PACKAGE}, or --renderer own"
         )
 
 

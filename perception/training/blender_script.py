@@ -6,11 +6,13 @@ the image are those of the truth.
 
 import json
 import sys
+from importlib import import_module
 from math import cos, pi, sin
 from pathlib import Path
 from typing import Any
 
-import bpy
+# Not among the project's own needs: who wants Blender installs it beside them.
+bpy: Any = import_module("bpy")
 
 UNIT = 0.01
 

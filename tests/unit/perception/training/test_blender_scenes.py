@@ -11,7 +11,7 @@ CONFIG = SceneConfig(extent=24.0, narrowest_px=6.0, widest_px=6.0, cables=1, fam
 
 def test_without_blender_it_says_what_to_install(monkeypatch):
     monkeypatch.setattr(blender, "find_spec", lambda name: None)
-    with pytest.raises(InputError, match=r"pip install 'cellwright\[blender\]'"):
+    with pytest.raises(InputError, match=r"pip install --no-deps bpy"):
         need_blender()
 
 
