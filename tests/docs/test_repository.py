@@ -12,6 +12,7 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 MAX_BYTES = 2_000_000
+MOST_OF_WEIGHTS, ALL_WEIGHTS = 30_000_000, 80_000_000
 # Import names whose distribution says nothing of them, or is a part of another one.
 OWNERS = {"coal": ["pin"], "pinocchio": ["pin"], "pydantic_core": ["pydantic"]}
 ABSOLUTE_PATH = re.compile(r"(?<![\w.~<])/(?:home|root|tmp|work|Users)/[\w.]")
@@ -41,8 +42,12 @@ def text_of(path: Path) -> str:
 
 
 def test_no_file_is_large():
-    large = {str(path): path.stat().st_size for path in tracked_files()}
-    assert {name: size for name, size in large.items() if size > MAX_BYTES} == {}
+    sizes = {path: path.stat().st_size for path in tracked_files()}
+    weights = {path: size for path, size in sizes.items() if path.suffix == ".safetensors"}
+    others = {path: size for path, size in sizes.items() if path not in weights}
+    assert {path.name: size for path, size in others.items() if size > MAX_BYTES} == {}
+    assert {path.name: size for path, size in weights.items() if size > MOST_OF_WEIGHTS} == {}
+    assert sum(weights.values()) <= ALL_WEIGHTS
 
 
 def test_no_file_names_a_path_of_one_machine():
