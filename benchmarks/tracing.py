@@ -25,11 +25,10 @@ from benchmarks.tracing_tasks import (
     most_are_right,
     traced,
 )
+from perception.cable import parts
 from perception.cable.interfaces import Tracer
-from perception.cable.parts import TRACER
 from perception.cable.tracers.analytic import AnalyticTracer
 from perception.cable.tracers.learned import LearnedTracer
-from perception.cable.tracers.posterior import PosteriorTracer
 from perception.cable.tracers.skeleton import SkeletonTracer, SkeletonTracerConfig
 from perception.cable.tracers.transitions import ThreadingConfig
 from perception.cable.types import Trace
@@ -39,7 +38,7 @@ from perception.training.calibration import expected_calibration_error, selectiv
 # Each crossing by itself, the way that bends least, as mBEST does it (Choi et al. 2023).
 EACH_BY_ITSELF = SkeletonTracerConfig(threading=ThreadingConfig(most=1, ring_cost=0.0))
 TRACERS: dict[str, Callable[[], Tracer]] = {
-    "": lambda: PosteriorTracer(FOLDER / TRACER),
+    "": lambda: parts.TRACERS["learned"](parts.EYES["learned"]()),
     "_skeleton": SkeletonTracer,
     "_analytic": AnalyticTracer,
     "_least_bending": lambda: SkeletonTracer(EACH_BY_ITSELF),
@@ -81,7 +80,7 @@ def _tiers(seed: int, wanted: int) -> tuple[list[Row], list[tuple[float, bool]]]
 
 def _singles(tasks: Sequence[Task]) -> tuple[list[Row], list[tuple[float, bool]]]:
     """Return how many single cables are followed, how long that takes, and our beliefs."""
-    ours, one_way, skeleton = TRACERS[""](), LearnedTracer(FOLDER / TRACER), SkeletonTracer()
+    ours, one_way, skeleton = TRACERS[""](), LearnedTracer(FOLDER / parts.TRACER), SkeletonTracer()
     for warm in (ours, one_way, skeleton):
         traced(warm, tasks[0])
     timed = [[_timed(tracer, task) for task in tasks] for tracer in (ours, one_way, skeleton)]
