@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from perception.cable.tracers.paths import Detour, Path
+from perception.cable.tracers.starts import from_start
 from perception.cable.tracers.survey import Survey
 from perception.cable.types import TraceEnd
 from perception.models.frames import Floats
@@ -72,7 +73,12 @@ def hypotheses(survey: Survey, start: int) -> tuple[Hypothesis, ...]:
 
 def _all(survey: Survey, start: int) -> Iterator[Hypothesis]:
     ahead = [
-        Hypothesis(path.points, path.end or TraceEnd.LOST, _reached(survey, path), there=belief)
+        Hypothesis(
+            from_start(survey.ends.points[start], path.points),
+            path.end or TraceEnd.LOST,
+            _reached(survey, path),
+            there=belief,
+        )
         for path, belief in believed(survey.found[start])
     ]
     back = []
@@ -80,7 +86,8 @@ def _all(survey: Survey, start: int) -> Iterator[Hypothesis]:
         if number == start:
             continue
         for path, belief in believed(found):
-            turned = Hypothesis(path.points[::-1], TraceEnd.ENDPOINT, number, back=belief)
+            points = from_start(survey.ends.points[number], path.points)[::-1]
+            turned = Hypothesis(points, TraceEnd.ENDPOINT, number, back=belief)
             back.append((turned, _reached(survey, path) == start))
     yield from ahead
     yield from (turned for turned, whole in back if whole)
@@ -174,7 +181,10 @@ def same(a: Hypothesis, b: Hypothesis) -> bool:
     gaps = apart(a.points, b.points)
     # Ends differ by what was known of them.
     inner = gaps[2:-2, :], gaps[:, 2:-2]
-    return bool(inner[0].min(axis=1).max() < STEP and inner[1].min(axis=0).max() < STEP)
+    return bool(
+        inner[0].min(axis=1).max(initial=0.0) < STEP
+        and inner[1].min(axis=0).max(initial=0.0) < STEP
+    )
 
 
 def apart(a: Floats, b: Floats) -> Floats:

@@ -12,7 +12,7 @@ import numpy as np
 
 from perception.cable.tracers.paths import Ends
 from perception.cable.tracers.search import Search, SearchConfig, run_searches
-from perception.cable.tracers.starts import first_paths
+from perception.cable.tracers.starts import first_paths, from_start
 from perception.cable.tracers.steps import StepModel
 from perception.cable.types import Endpoint, Points, Trace, TraceEnd
 from perception.cable.width import cable_width
@@ -65,7 +65,7 @@ class LearnedTracer:
         beliefs /= max(float(beliefs.sum()), 1.0)
         return tuple(
             Trace(
-                points_px=np.vstack([start_px[:1], scaled.back(path.points)]),
+                points_px=scaled.back(from_start(scaled.into(start_px[0]), path.points)),
                 end=path.end or TraceEnd.LOST,
                 probability=float(belief),
             )

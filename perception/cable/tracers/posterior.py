@@ -21,6 +21,7 @@ from perception.cable.observation import Observation
 from perception.cable.tracers.evidence import FEATURES, NONE_FEATURES, doubts, evidence
 from perception.cable.tracers.hypotheses import Hypothesis, hypotheses
 from perception.cable.tracers.search import SearchConfig
+from perception.cable.tracers.starts import from_start
 from perception.cable.tracers.steps import StepModel
 from perception.cable.tracers.survey import Survey, View, survey, view_from
 from perception.cable.types import Endpoint, Points, Trace, TraceEnd
@@ -239,5 +240,5 @@ def read_weights(path: FilePath) -> Weights:
 
 
 def _as_trace(found: Survey, start: int, one: Hypothesis, belief: float) -> Trace:
-    points = found.image.back(np.vstack([found.ends.points[start], one.points]))
+    points = found.image.back(from_start(found.ends.points[start], one.points))
     return Trace(points, one.end, belief)

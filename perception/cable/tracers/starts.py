@@ -11,6 +11,8 @@ from perception.models.frames import ScaledImage
 from perception.models.tracer_crop import STEP
 
 DIRECTIONS = 16
+# A path that has a point this near to its start goes through it.
+SAME = 0.25 * STEP
 
 
 def first_paths(start_px: Points, endpoints: Sequence[Endpoint], scaled: ScaledImage) -> list[Path]:
@@ -32,6 +34,18 @@ def first_paths(start_px: Points, endpoints: Sequence[Endpoint], scaled: ScaledI
     turns = np.linspace(0.0, 2.0 * np.pi, DIRECTIONS, endpoint=False)
     ways = known[:1] or list(np.column_stack([np.cos(turns), np.sin(turns)]))
     return [_fresh(np.vstack([points[0] - STEP * way, points[0]])) for way in ways]
+
+
+def from_start(start: Points, points: Points) -> Points:
+    """Return a path from its start on, without a point behind it that told its direction.
+
+    Args:
+        start: Where the cable begins, shape (2,).
+        points: Of the path, shape (N, 2).
+    """
+    gaps = np.linalg.norm(points[:2] - start, axis=1)
+    nearest = int(gaps.argmin())
+    return np.vstack([start, points[nearest + 1 :] if gaps[nearest] < SAME else points])
 
 
 def _fresh(points: Points) -> Path:
