@@ -97,12 +97,15 @@ def fit(judged: Judged) -> tuple[float, float]:
 def figures(judged: Judged) -> dict[str, float]:
     """Return what a card tells."""
     sure = judged.beliefs > ReadingConfig().least_end
+    # The answer to each place is the likelier one of "an end" and "none".
+    confidence = np.maximum(judged.beliefs, 1.0 - judged.beliefs)
+    answers = ((judged.beliefs > 0.5) == (judged.right > 0.5)).astype(float)
     return {
         "n": judged.wanted,
         "ends_found": float(judged.right[sure].sum()) / judged.wanted,
         "ends_right": float(judged.right[sure].mean()),
-        "calibration_error": expected_calibration_error(judged.beliefs, judged.right),
-        "error_of_surest_80": selective_error(judged.beliefs, judged.right),
+        "calibration_error": expected_calibration_error(confidence, answers),
+        "error_of_surest_80": selective_error(confidence, answers),
         "mask_iou": float(judged.overlaps.mean()),
         "width_error": float(np.median(judged.width_errors)),
     }

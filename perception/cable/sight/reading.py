@@ -31,7 +31,7 @@ class ReadingConfig:
         least_cable: So many squared widths of cable tell its width.
     """
 
-    least_end: float = 0.5
+    least_end: float = 0.3
     least_crossing: float = 0.4
     least_tangle: float = 0.4
     ends_apart: float = 1.5

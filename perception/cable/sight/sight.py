@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from executive.core.errors import InputError
 from perception.cable.sight.reading import ReadingConfig, read_maps
-from perception.cable.sight.scales import better_scale, resized
+from perception.cable.sight.scales import apparent_width, better_scale, resized
 from perception.cable.sight.seen import Seen
 from perception.camera import GreyImage
 from perception.models.sight_input import prepare
@@ -58,7 +58,7 @@ class Sight:
         image = np.frombuffer(pixels, dtype=np.uint8).reshape(shape)
         scale, seen = 1.0, self._read(image)
         for _ in range(MOST_LOOKS - 1):
-            wanted = better_scale(scale, seen.width_px, shape)
+            wanted = better_scale(scale, apparent_width(seen), shape)
             if wanted is None:
                 break
             scale = wanted
