@@ -1,0 +1,129 @@
+"""Cuboids seen through a pinhole camera: which pixels show them, and how deep.
+
+Rays are clipped against the three pairs of planes of a cuboid (the slab test of Kay and Kajiya,
+"Ray tracing complex scenes", 1986), for many cuboids at a time.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from perception.camera import CameraModel
+from perception.shelf.types import Floats
+
+Ints = NDArray[np.int64]
+
+# A ray along a plane would divide by nothing.
+PARALLEL = 1e-12
+# Boxes are cast together while their windows hold no more pixels than this.
+BATCH_PX = 400_000
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Silhouettes:
+    """The pixels of several boxes, box after box.
+
+    Attributes:
+        pixel: Index into the flattened image, shape (P,).
+        depth_m: Distance of the box's surface along the view [m], shape (P,).
+        box: Which box, ascending, shape (P,).
+        count: Number of boxes; some may have no pixel.
+    """
+
+    pixel: Ints
+    depth_m: Floats
+    box: Ints
+    count: int
+
+    def sums(self, values: Floats) -> Floats:
+        """Add up a value for each pixel, shape (P,), box by box, shape (count,)."""
+        return np.bincount(self.box, weights=values, minlength=self.count)
+
+
+class BoxCaster:
+    """Casts the rays of one camera."""
+
+    def __init__(self, camera: CameraModel) -> None:
+        """Lay out the rays of all pixels."""
+        self.camera = camera
+        columns, rows = np.meshgrid(
+            (np.arange(camera.width_px) - camera.centre_px[0]) / camera.focal_px,
+            (np.arange(camera.height_px) - camera.centre_px[1]) / camera.focal_px,
+        )
+        axes = np.stack([columns, rows, np.ones_like(rows)], axis=-1)
+        # The parameter of a ray is then the distance along the view.
+        self.rays = axes @ camera.T_world_camera[:3, :3].T
+        self.origin_m: Floats = camera.T_world_camera[:3, 3]
+        steep = np.where(np.abs(self.rays) < PARALLEL, PARALLEL, self.rays)
+        self._inverse = (1.0 / steep).reshape(-1, 3)
+
+    def cast(self, low_m: Floats, high_m: Floats) -> Silhouettes:
+        """Find the pixels of boxes that lie wholly in front of the camera.
+
+        Args:
+            low_m: Lower corners [m], world frame, shape (N, 3).
+            high_m: Upper corners, same shape.
+
+        Returns:
+            Pixels inside the image only, box after box.
+        """
+        first, size = self._windows(low_m, high_m)
+        step = max(1, int(BATCH_PX // max(1, int(size.prod()))))
+        parts = [
+            self._cast_some(low_m[at : at + step], high_m[at : at + step], first[at : at + step], size)
+            for at in range(0, len(low_m), step)
+        ]
+        if not parts:
+            return Silhouettes(np.zeros(0, np.int64), np.zeros(0), np.zeros(0, np.int64), 0)
+        boxes = [part[2] + index * step for index, part in enumerate(parts)]
+        return Silhouettes(
+            np.concatenate([part[0] for part in parts]),
+            np.concatenate([part[1] for part in parts]),
+            np.concatenate(boxes),
+            len(low_m),
+        )
+
+    def inside(self, low_m: Floats, high_m: Floats) -> tuple[Floats, Floats]:
+        """Return where every ray enters and leaves one box, shape (height, width) each.
+
+        Where the ray misses it, it leaves before it enters.
+        """
+        shape = self.rays.shape[:2]
+        near, far = _clip(self._inverse, low_m - self.origin_m, high_m - self.origin_m)
+        return near.reshape(shape), far.reshape(shape)
+
+    def _windows(self, low_m: Floats, high_m: Floats) -> tuple[Ints, Ints]:
+        """Return each box's first (row, column) and the (rows, columns) that are enough for all."""
+        pick = np.array([[i, j, k] for i in (0, 1) for j in (0, 1) for k in (0, 1)], dtype=bool)
+        points_m = np.where(pick, high_m[:, None, :], low_m[:, None, :])
+        points_px = self.camera.project(points_m.reshape(-1, 3)).reshape(-1, 8, 2)[..., ::-1]
+        first = np.floor(points_px.min(axis=1)).astype(np.int64)
+        last = np.ceil(points_px.max(axis=1)).astype(np.int64)
+        size = (last - first + 1).max(axis=0) if len(first) else np.zeros(2, np.int64)
+        return first, size
+
+    def _cast_some(
+        self, low_m: Floats, high_m: Floats, first: Ints, size: Ints
+    ) -> tuple[Ints, Floats, Ints]:
+        rows = first[:, 0, None, None] + np.arange(size[0])[None, :, None]
+        columns = first[:, 1, None, None] + np.arange(size[1])[None, None, :]
+        inside = (rows >= 0) & (rows < self.camera.height_px)
+        inside = inside & (columns >= 0) & (columns < self.camera.width_px)
+        box, row, column = np.nonzero(inside)
+        pixel = (first[box, 0] + row) * self.camera.width_px + first[box, 1] + column
+        near, far = _clip(
+            self._inverse[pixel], low_m[box] - self.origin_m, high_m[box] - self.origin_m
+        )
+        hit = (near <= far) & (near > 0.0)
+        return pixel[hit], near[hit], box[hit]
+
+
+def _clip(inverse: Floats, low_m: Floats, high_m: Floats) -> tuple[Floats, Floats]:
+    near = np.full(len(inverse), -np.inf)
+    far = np.full(len(inverse), np.inf)
+    for axis in range(3):
+        a, b = low_m[..., axis] * inverse[:, axis], high_m[..., axis] * inverse[:, axis]
+        near = np.maximum(near, np.minimum(a, b))
+        far = np.minimum(far, np.maximum(a, b))
+    return near, far

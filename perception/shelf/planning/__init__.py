@@ -1,0 +1,1 @@
+"""What to move next in a search of a shelf."""

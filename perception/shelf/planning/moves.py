@@ -1,0 +1,34 @@
+"""The two actions of a search (thesis, section 5.2): a push along the shelf, and a change of place."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class Push:
+    """Push an object along the shelf until it has gone that far or touches something.
+
+    Attributes:
+        label: Which object.
+        shift_m: How far along x; negative against it.
+    """
+
+    label: str
+    shift_m: float
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """Take an object out with the suction cup and put it down elsewhere.
+
+    Attributes:
+        label: Which object.
+        x_m: Where its centre goes, along the shelf.
+        y_m: Where its centre goes, into the shelf.
+    """
+
+    label: str
+    x_m: float
+    y_m: float
+
+
+Move = Push | Place

@@ -1,0 +1,105 @@
+"""Room on a shelf: what a blade can push how far, and what a suction cup can take and put where.
+
+The tool is the bluction tool, a thin blade with a suction cup at its tip (thesis, sections 5.2 and
+7.5). Everything is judged on footprints, whatever the heights: tools and carried objects come in
+from the front, low. Footprints are rows (x low, y low, x high, y high) [m] in the shelf's frame.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from perception.shelf.types import Bools, Box, Floats, Shelf
+
+# Objects that touch do not collide.
+TOUCH_M = 1e-6
+
+
+@dataclass(frozen=True, slots=True)
+class Reach:
+    """What the tool needs.
+
+    Attributes:
+        blade_m: Thickness of the blade that goes in beside an object; 0 asks for no lane, as in
+            simulators of first order.
+        overlap_m: How far along the object's side the blade must reach to push it.
+        gap_m: What stays between a pushed object and what stopped it.
+        suction: Whether there is a cup, so that objects can be taken out and put elsewhere.
+    """
+
+    blade_m: float = 0.01
+    overlap_m: float = 0.02
+    gap_m: float = 0.002
+    suction: bool = True
+
+
+def footprints(boxes: Sequence[Box]) -> Floats:
+    """Return footprints of boxes, shape (N, 4)."""
+    rows = [(*box.low_m[:2], *box.high_m[:2]) for box in boxes]
+    return np.array(rows, dtype=np.float64).reshape(-1, 4)
+
+
+def overlapping(one: Floats, others: Floats) -> Bools:
+    """Say which of the others' footprints (..., 4) one footprint overlaps by more than touch."""
+    low = np.maximum(one[..., :2], others[..., :2])
+    high = np.minimum(one[..., 2:], others[..., 2:])
+    return np.asarray(((high - low) > TOUCH_M).all(axis=-1))
+
+
+def blade_fits(moved: Floats, others: Floats, sign: int, shelf: Shelf, reach: Reach) -> bool:
+    """Say whether the blade can come in at the side from which it pushes.
+
+    Args:
+        moved: Footprint of the object, shape (4,).
+        others: All other footprints, shape (N, 4).
+        sign: +1 to push along x, -1 against it.
+        shelf: The shelf.
+        reach: What the tool needs.
+    """
+    if reach.blade_m == 0.0:
+        return True
+    side_m = moved[0] if sign > 0 else moved[2]
+    edges_m = sorted((side_m, side_m - sign * reach.blade_m))
+    if edges_m[0] < -TOUCH_M or edges_m[1] > shelf.width_m + TOUCH_M:
+        return False
+    deep_m = moved[1] + min(reach.overlap_m, moved[3] - moved[1])
+    lane = np.array([edges_m[0], -1.0, edges_m[1], deep_m])
+    return not bool(overlapping(lane, others).any())
+
+
+def push_room_m(moved: Floats, others: Floats, sign: int, shelf: Shelf, reach: Reach) -> float:
+    """Return how far an object can be pushed until it would touch another one or the wall."""
+    beside = (np.minimum(moved[3], others[:, 3]) - np.maximum(moved[1], others[:, 1])) > TOUCH_M
+    if sign > 0:
+        ahead = others[beside & (others[:, 0] >= moved[2] - TOUCH_M), 0] - moved[2]
+        wall_m = shelf.width_m - moved[2]
+    else:
+        ahead = moved[0] - others[beside & (others[:, 2] <= moved[0] + TOUCH_M), 2]
+        wall_m = moved[0]
+    return float(max(0.0, min([wall_m, *(ahead - reach.gap_m)])))
+
+
+def way_out(moved: Floats, others: Floats) -> bool:
+    """Say whether nothing stands in front of an object, so that it comes out straight."""
+    lane = np.array([moved[0], -1.0, moved[2], moved[1]])
+    return not bool(overlapping(lane, others).any())
+
+
+def fits_at(places: Floats, others: Floats, shelf: Shelf) -> Bools:
+    """Say at which places an object can be put down from the front.
+
+    Args:
+        places: Footprints of the object where it would stand, shape (K, 4).
+        others: Footprints of all others, shape (N, 4).
+        shelf: The shelf.
+
+    Returns:
+        Whether it stands inside, on nothing else, with nothing in front of it, shape (K,).
+    """
+    inside = (places[:, :2] >= -TOUCH_M).all(axis=1)
+    inside &= places[:, 2] <= shelf.width_m + TOUCH_M
+    inside &= places[:, 3] <= shelf.depth_m + TOUCH_M
+    swept = places.copy()
+    swept[:, 1] = -1.0
+    return inside & ~overlapping(swept[:, None, :], others[None, :, :]).any(axis=1)
