@@ -33,11 +33,11 @@ def _learned_tracer(eye: Eye) -> Tracer:
     return PosteriorTracer(FOLDER / TRACER, eye.observe)
 
 
-def _learned_classifier() -> CrossingClassifier:
+def _learned_classifier(eye: Eye) -> CrossingClassifier:
     from perception.cable.classifiers.learned import LearnedClassifier
     from perception.models.store import FOLDER
 
-    return LearnedClassifier(FOLDER / CROSSING)
+    return LearnedClassifier(FOLDER / CROSSING, eye.observe)
 
 
 EYES: dict[EyeName, Callable[[], Eye]] = {"thresholds": ThresholdEye, "learned": _learned_eye}
@@ -46,8 +46,8 @@ TRACERS: dict[TracerName, Callable[[Eye], Tracer]] = {
     "analytic": lambda eye: AccountableTracer(AnalyticTracer(observe=eye.observe), eye.observe),
     "learned": _learned_tracer,
 }
-CLASSIFIERS: dict[ClassifierName, Callable[[], CrossingClassifier]] = {
-    "edges": EdgeClassifier,
-    "continuity": ContinuityClassifier,
+CLASSIFIERS: dict[ClassifierName, Callable[[Eye], CrossingClassifier]] = {
+    "edges": lambda _: EdgeClassifier(),
+    "continuity": lambda _: ContinuityClassifier(),
     "learned": _learned_classifier,
 }

@@ -64,7 +64,7 @@ class GreyImageVision:
         self._config = config or VisionConfig()
         self._eye = EYES[self._config.eye]()
         self._tracer = TRACERS[self._config.tracer](self._eye)
-        self._classifier = CLASSIFIERS[self._config.classifier]()
+        self._classifier = CLASSIFIERS[self._config.classifier](self._eye)
         self._starter = AnalyticTracer(observe=self._eye.observe)
 
     def cable_pixels(self, image: GreyImage) -> NDArray[np.bool_]:

@@ -9,6 +9,7 @@ import torch
 
 from perception.cable.classifiers.passes import StrandPass, passes_of, path_through
 from perception.cable.crossings import CrossingSite, decide, find_sites
+from perception.cable.observation import Observe
 from perception.cable.types import Crossing, Points, Trace
 from perception.cable.width import width_under
 from perception.camera import GreyImage
@@ -39,9 +40,11 @@ class LearnedClassifier:
 
     Args:
         folder: A trained version, see `perception.models.store`.
+        observe: Tells how wide cables are; where it does not, that is measured along traces.
     """
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, observe: Observe | None = None) -> None:
+        self._observe = observe
         self._network = load_network(folder)
         self._temperature = read_config(folder).temperature
 
@@ -54,7 +57,7 @@ class LearnedClassifier:
         sites = find_sites(traces)
         if not sites:
             return ()
-        scaled = scale_for_ribbons(image, width_under(image, [trace.points_px for trace in traces]))
+        scaled = scale_for_ribbons(image, self._width(image, traces))
         paths = np.array(
             [[_path(strand, scaled.scale) for strand in passes_of(site, traces)] for site in sites]
         )
@@ -63,6 +66,12 @@ class LearnedClassifier:
             JudgedSite(site, a_over, real)
             for site, (a_over, real) in zip(sites, beliefs, strict=True)
         )
+
+    def _width(self, image: GreyImage, traces: Sequence[Trace]) -> float:
+        observation = self._observe(image) if self._observe is not None else None
+        if observation is not None:
+            return observation.mask.width_px
+        return width_under(image, [trace.points_px for trace in traces])
 
     @torch.inference_mode()
     def _beliefs(self, ribbons: torch.Tensor) -> list[tuple[float, float]]:

@@ -45,7 +45,9 @@ def from_start(start: Points, points: Points) -> Points:
     """
     gaps = np.linalg.norm(points[:2] - start, axis=1)
     nearest = int(gaps.argmin())
-    return np.vstack([start, points[nearest + 1 :] if gaps[nearest] < SAME else points])
+    ahead = points[nearest + 1 :] if gaps[nearest] < SAME else points
+    # A path that never left its start keeps the point that tells its direction.
+    return np.vstack([start, ahead]) if len(ahead) else points
 
 
 def _fresh(points: Points) -> Path:
