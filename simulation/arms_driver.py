@@ -8,6 +8,7 @@ from typing import Literal
 import numpy as np
 
 from executive.core.errors import DeviceError
+from robots.drivers.starting import refuse_after_emergency, refuse_elsewhere, refuse_while_moving
 from robots.interfaces import ARMS, Arm, ArmsState, Floats, Grip, Trajectory
 from robots.limits import JointLimits
 from robots.motion import feed
@@ -16,7 +17,6 @@ from simulation.cable.rod import Rod
 from simulation.grippers import Gripper
 from simulation.yumi_body import YumiBody
 
-_START_TOLERANCE_RAD = 2e-3
 # Brakes take out speed four times as fast as a motion would, and bite at once.
 _BRAKE_ACCELERATION, _BRAKE_JERK = 4.0, 1000.0
 _Mode = Literal["rest", "motion", "stop", "brake"]
@@ -127,37 +127,16 @@ class SimArmsDriver:
             DeviceError: It begins elsewhere, or another one is running.
         """
         with self._lock:
-            self._refuse_what_cannot_begin(trajectory)
+            refuse_after_emergency(self._latched)
+            refuse_while_moving(self._mode)
+            refuse_elsewhere(trajectory, self._body.joint_state()[0])
             self._motion = trajectory
             self._begin(trajectory, "motion")
-
-    def _refuse_what_cannot_begin(self, trajectory: Trajectory) -> None:
-        self._refuse_after_emergency()
-        if self._mode != "rest":
-            raise DeviceError(
-                f"arms: a {self._mode} is under way; got another trajectory; expected one at a "
-                "time; try: wait until the state says that nothing moves"
-            )
-        away_rad = np.abs(trajectory.at(0.0)[0] - self._body.joint_state()[0])
-        if away_rad.max() > _START_TOLERANCE_RAD:
-            joint = int(away_rad.argmax())
-            raise DeviceError(
-                f"arms: trajectory begins elsewhere; got {ARMS[joint // 7]} joint "
-                f"{joint % 7 + 1} off by {away_rad[joint]:.4f} rad; expected at most "
-                f"{_START_TOLERANCE_RAD} rad; try: plan from the present state"
-            )
-
-    def _refuse_after_emergency(self) -> None:
-        if self._latched:
-            raise DeviceError(
-                "arms: an emergency stop was made; got another command; expected none until the "
-                "cell is opened anew"
-            )
 
     def grip(self, arm: Arm, grip: Grip) -> None:
         """Start opening or closing a gripper; a closing one takes what is between its fingers."""
         with self._lock:
-            self._refuse_after_emergency()
+            refuse_after_emergency(self._latched)
             self._grippers[arm].command(grip)
 
     def gripping(self, arm: Arm) -> bool:
