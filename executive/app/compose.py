@@ -3,7 +3,9 @@
 The heavy imports of the project meet here and nowhere else.
 """
 
+import importlib.util
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from typing import Literal, Protocol
 
 import numpy as np
@@ -16,6 +18,8 @@ from executive.core.work import InlineWorker, ThreadWorker, Worker
 from executive.core.world import Cell, RestorableCell, StreamMessage
 from executive.engine.language.document import CellDocument
 from perception.cable.interfaces import CableVision
+
+VisionKind = Literal["learned", "classic"]
 
 # Arms in the ready pose reach this far into the overhead image.
 ROWS_OF_ARMS_AT_HOME = 58
@@ -93,7 +97,7 @@ def _open_table_cell(document: CellDocument, scenario: Mapping[str, object], see
     world = TableCell(document.config, scenario, seed)
     services = {
         "arms": PlannedDualArm(world.driver, seed=seed),
-        "vision": cable_vision(hidden_rows=ROWS_OF_ARMS_AT_HOME),
+        "vision": cable_vision(ROWS_OF_ARMS_AT_HOME, "classic"),
         "rng": np.random.default_rng(seed),
         **workers(document.work),
     }
@@ -121,12 +125,32 @@ def _open_dry_cell(
     return DryCell(document.config, scenario)
 
 
-def cable_vision(hidden_rows: int = 0) -> CableVision:
-    """Return the perception that missions and `perceive` use.
+def cable_vision(hidden_rows: int = 0, kind: VisionKind | None = None) -> CableVision:
+    """Return the perception of cables.
 
     Args:
         hidden_rows: Lowest image rows that show the robot instead of the table.
-    """
-    from perception.cable.vision import GreyImageVision, VisionConfig
+        kind: With networks, or without; None takes networks where they can run.
 
-    return GreyImageVision(VisionConfig(hidden_rows=hidden_rows))
+    Raises:
+        InputError: Networks are asked for, and what they need is not installed.
+    """
+    from perception.cable.vision import LEARNED, GreyImageVision, VisionConfig
+
+    installed = importlib.util.find_spec("torch") is not None
+    if kind == "learned" and not installed:
+        raise InputError(
+            "vision: networks need PyTorch, which is not installed; "
+            "try pip install 'cellwright[learn]', or the classic one"
+        )
+    if kind == "classic" or not installed:
+        return GreyImageVision(VisionConfig(hidden_rows=hidden_rows))
+    _use_one_thread()
+    return GreyImageVision(replace(LEARNED, hidden_rows=hidden_rows))
+
+
+def _use_one_thread() -> None:
+    """Let networks work in one thread: they are small, and threads would wait for each other."""
+    import torch
+
+    torch.set_num_threads(1)

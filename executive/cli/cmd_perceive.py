@@ -2,7 +2,7 @@
 
 import json
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import numpy as np
 import typer
@@ -15,8 +15,11 @@ from executive.cli.images import read_grey, write_image
 from executive.core.errors import InputError
 
 if TYPE_CHECKING:
-    from perception.cable.types import CableScene, Points
+    from perception.cable.types import CableScene, Points, Question
     from perception.camera import GreyImage
+
+# Knots that are told of, the likeliest first.
+MOST_KNOTS = 3
 
 perceive = typer.Typer(help="Run perception on image files.", no_args_is_help=True)
 
@@ -36,6 +39,10 @@ def cable(
     as_json: Annotated[
         bool, typer.Option("--json", help="Print one line of JSON an image on stdout.")
     ] = False,
+    vision: Annotated[
+        Literal["learned", "classic"] | None,
+        typer.Option(help="With networks, or without; with them where PyTorch is installed."),
+    ] = None,
     out: Annotated[
         Path | None,
         typer.Option(metavar="PNG", dir_okay=False, help="Draw what is found; one image only."),
@@ -48,7 +55,7 @@ def cable(
         raise InputError(f"--out {out}: got {len(images)} images; expected one, try one at a time")
     start_px = None if start is None else _point(start)
     with stdout_kept_for_the_result():
-        vision = cable_vision()
+        eyes = cable_vision(kind=vision)
     failed = False
     for path in images:
         try:
@@ -60,7 +67,7 @@ def cable(
             failed = True
             continue
         with stdout_kept_for_the_result():
-            scene = vision.scene(image, start_px)
+            scene = eyes.scene(image, start_px)
         _print_scene(path, scene, as_json)
         if out is not None:
             _draw(out, image, scene)
@@ -99,6 +106,12 @@ def _print_scene(path: Path, scene: "CableScene", as_json: bool) -> None:
     table.add_row("crossings", str(len(scene.crossings)))
     table.add_row("knots", str(len(scene.knots)))
     table.add_row("P(knotted)", f"{scene.knotted_probability:.3f}")
+    likeliest = [f"{knot.name} {knot.probability:.2f}" for knot in scene.knot_types[:MOST_KNOTS]]
+    table.add_row("knot of the first", ", ".join(likeliest) or "unknown")
+    if scene.telling is not None:
+        x, y = scene.telling.position_px
+        told = "which way at" if scene.telling.kind == "path" else "over or under at"
+        table.add_row("most telling", f"{told} {x:.0f},{y:.0f} ({scene.telling.bits:.2f} bits)")
     table.add_row("took", f"{scene.seconds:.2f} s")
     results().print(Text(str(path), "bold"), table)
 
@@ -144,7 +157,17 @@ def scene_document(path: Path, scene: "CableScene") -> JsonValue:
             for knot in scene.knots
         ],
         "knotted_probability": float(scene.knotted_probability),
+        "knot_types": {knot.name: float(knot.probability) for knot in scene.knot_types},
+        "telling": None if scene.telling is None else _question(scene.telling),
         "seconds": float(scene.seconds),
+    }
+
+
+def _question(telling: "Question") -> JsonValue:
+    return {
+        "kind": telling.kind.value,
+        "position_px": _rounded(telling.position_px),
+        "bits": float(telling.bits),
     }
 
 

@@ -21,6 +21,7 @@ from perception.cable.parts import (
     EyeName,
     TracerName,
 )
+from perception.cable.polyline import resample
 from perception.cable.telling import telling_question
 from perception.cable.tracers.analytic import AnalyticTracer
 from perception.cable.types import CableScene, Crossing, Endpoint, Knot, Points, Reading, Trace
@@ -28,6 +29,8 @@ from perception.camera import GreyImage
 
 # Tracers finish up to this far from an end.
 REACHED_PX = 20.0
+# A trace runs through an end that lies this near to it.
+THROUGH_PX = 4.0
 # A second point this far into the cable tells a tracer which way to go from an end.
 AHEAD_PX = 4.0
 # Other ways to read a cable than the likeliest are weighed down to this belief, so many at most.
@@ -54,6 +57,10 @@ class VisionConfig:
     start_steps: int = 6
     hidden_rows: int = 0
     grasps: GraspConfig = field(default_factory=GraspConfig)
+
+
+# What sees cables of any look on any table; without it, bright cables on dark cloth are seen.
+LEARNED = VisionConfig(eye="learned", tracer="learned", classifier="learned")
 
 
 class GreyImageVision:
@@ -149,7 +156,7 @@ class GreyImageVision:
             return [ways] if ways else []
         cables: list[tuple[Trace, ...]] = []
         for endpoint in endpoints:
-            if any(_touches(ways[0], endpoint) for ways in cables):
+            if any(_accounts_for(ways[0], endpoint) for ways in cables):
                 continue
             ahead = endpoint.position_px + AHEAD_PX * endpoint.direction
             ways = self._ways(image, np.stack([endpoint.position_px, ahead]), endpoints)
@@ -181,7 +188,11 @@ class GreyImageVision:
         ]
 
 
-def _touches(trace: Trace, endpoint: Endpoint) -> bool:
-    """Say whether a trace starts or ends at an endpoint."""
-    gaps = np.linalg.norm(trace.points_px[[0, -1]] - endpoint.position_px, axis=1)
-    return bool(gaps.min() <= REACHED_PX)
+def _accounts_for(trace: Trace, endpoint: Endpoint) -> bool:
+    """Say whether a trace starts or ends at an endpoint, or runs through a doubtful one."""
+    if np.linalg.norm(trace.points_px[[0, -1]] - endpoint.position_px, axis=1).min() <= REACHED_PX:
+        return True
+    through_px = np.linalg.norm(
+        resample(trace.points_px, THROUGH_PX) - endpoint.position_px, axis=1
+    ).min()
+    return bool(through_px <= THROUGH_PX and endpoint.probability < trace.probability)
