@@ -2,12 +2,11 @@
 
 import math
 
-from robots.descriptions.yumi import FINGER_SPEED_M_S, FINGER_STROKE_M
+from robots.descriptions.yumi import CAGE_OPENING_M, FINGER_SPEED_M_S, FINGER_STROKE_M
 from robots.interfaces import Arm, Grip
 from simulation.cable.rod import Rod
 
 OPEN_M = 2.0 * FINGER_STROKE_M
-_CAGE_M = 0.011  # a ring that the cable slides through and its plug does not
 _SLACK_M = 0.0006  # closed fingers leave the cable to its grasp instead of pressing on it
 
 # The space between the fingers: how deep inside the hand, and how wide, a cable counts.
@@ -70,4 +69,4 @@ class Gripper:
             return OPEN_M
         diameter_m = 2.0 * self._rod.parameters.radius_m
         taken_m = self.strands * diameter_m + _SLACK_M if self.strands else 0.0
-        return taken_m if self._grip == "pinch" else max(_CAGE_M, taken_m)
+        return taken_m if self._grip == "pinch" else max(CAGE_OPENING_M, taken_m)

@@ -20,6 +20,7 @@ REACH_M = 0.807
 LEVERS_M = (0.74, 0.71, 0.50, 0.45, 0.21, 0.18, 0.04)
 FINGER_STROKE_M = 0.025  # of each finger; the opening between them is twice that
 FINGER_SPEED_M_S = 0.025
+CAGE_OPENING_M = 0.011  # a ring that the cable slides through and its plug does not
 _CAPSULE_ALLOWANCE_M = 0.001  # the fits let mesh vertices stick out by up to 0.61 mm
 
 _SHOULDER: dict[Arm, tuple[Vec3, Vec3]] = {

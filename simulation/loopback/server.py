@@ -58,8 +58,9 @@ class Server:
         """Serve drivers until `ended` says so."""
         while not ended():
             self._wait()
-            self._admit()
+            # Who has left is noticed before who comes instead.
             self._hear()
+            self._admit()
             if not self._settings.lockstep:
                 self._run_to(self._now_s())
 
@@ -140,14 +141,11 @@ class Server:
         return Station(self._controller, self._settings, session, self._now_s())
 
     def _hear(self) -> None:
-        if self._wire is None:
-            return
         try:
-            messages = self._wire.receive()
+            while self._wire is not None and (messages := self._wire.receive()):
+                self._take(messages)
         except WireError:
             self._drop()
-            return
-        self._take(messages)
 
     def _take(self, messages: list[Message]) -> None:
         for message in messages:
