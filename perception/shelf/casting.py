@@ -38,7 +38,8 @@ class Silhouettes:
 
     def sums(self, values: Floats) -> Floats:
         """Add up a value for each pixel, shape (P,), box by box, shape (count,)."""
-        return np.bincount(self.box, weights=values, minlength=self.count)
+        sums: Floats = np.bincount(self.box, weights=values, minlength=self.count).astype(float)
+        return sums
 
 
 class BoxCaster:
@@ -71,7 +72,9 @@ class BoxCaster:
         first, size = self._windows(low_m, high_m)
         step = max(1, int(BATCH_PX // max(1, int(size.prod()))))
         parts = [
-            self._cast_some(low_m[at : at + step], high_m[at : at + step], first[at : at + step], size)
+            self._cast_some(
+                low_m[at : at + step], high_m[at : at + step], first[at : at + step], size
+            )
             for at in range(0, len(low_m), step)
         ]
         if not parts:

@@ -83,11 +83,11 @@ class HiddenPoses:
             Shape (height, width).
         """
         shown = self.silhouettes
-        heat = np.bincount(
+        heat: Floats = np.bincount(
             shown.pixel,
             weights=np.asarray(weights, dtype=np.float64)[shown.box],
             minlength=self._shape[0] * self._shape[1],
-        )
+        ).astype(float)
         return heat.reshape(self._shape)
 
     def _unseen(self, view: ShelfView) -> Bools:

@@ -1,8 +1,9 @@
 """How well ordered a shelf is, estimated from what is seen of it.
 
-The thesis leaves this to the future (section 8.2): semantics mislead where nothing is in order. Each
-object's nearest seen neighbour is either one that its affinities prefer, or any; the share of the
-former is the degree of organisation. Its posterior on a grid, from an even prior, gives the mean.
+The thesis leaves this to the future (section 8.2): semantics mislead where nothing is in order.
+Each object's nearest seen neighbour is either one that its affinities prefer, or any; the share of
+the former is the degree of organisation. Its posterior on a grid, from an even prior, gives the
+mean.
 """
 
 from collections.abc import Mapping

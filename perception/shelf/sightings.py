@@ -1,6 +1,7 @@
-"""From a view to boxes: where the seen objects stand, as far as depth and their known sizes tell."""
+"""From a view to boxes: where objects stand, as far as depth and their known sizes tell."""
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -13,6 +14,8 @@ THINNEST_M = 0.05
 OUTLIERS = 0.02
 # Two pixels that differ by more in depth do not show the same surface.
 STEP_M = 0.01
+# What is nearest of an object and is narrower or lower may be a side or a top, and not its front.
+SLIVER_M = 0.012
 
 
 def sightings(
@@ -41,35 +44,56 @@ def sightings(
     return tuple(found)
 
 
+@dataclass(frozen=True, slots=True)
+class _Extent:
+    """What is seen of an object: from where to where, and whether that is its front."""
+
+    left_m: float
+    right_m: float
+    front_m: float
+    back_m: float
+    top_m: float
+    is_front: bool
+
+
 def _boxes(
-    points_m: Floats, depth_m: Floats, mask: Bools, size_m: Size | None, shelf: Shelf,
+    points_m: Floats,
+    depth_m: Floats,
+    mask: Bools,
+    size_m: Size | None,
+    shelf: Shelf,
     caster: BoxCaster,
-) -> tuple[Box, Box]:  # fmt: skip
+) -> tuple[Box, Box]:
     """Return the completed box and its sure part."""
-    seen = points_m[mask]
-    front_m = float(np.quantile(seen[:, 1], OUTLIERS))
-    near = mask & (points_m[..., 1] < front_m + STEP_M)
-    left_m, right_m = _sides(points_m, near, caster)
-    top_m = float(np.quantile(seen[:, 2], 1.0 - OUTLIERS))
+    near, extent = _extent(points_m, mask, caster)
+    width_m = max(extent.right_m - extent.left_m, 1e-3)
+    middle_m = 0.5 * (extent.left_m + extent.right_m)
     if size_m is None:
-        deep_m = max(THINNEST_M, float(np.quantile(seen[:, 1], 1.0 - OUTLIERS)) - front_m)
-        size_m = (right_m - left_m, deep_m, top_m)
-    back_m = min(front_m + size_m[1], shelf.depth_m)
-    front_m = back_m - size_m[1]
-    width_m = max(right_m - left_m, 1e-3)
-    y_m = 0.5 * (front_m + back_m)
-    sure = Box(0.5 * (left_m + right_m), y_m, (min(width_m, size_m[0]), size_m[1], size_m[2]))
-    x_m = _centre(left_m, right_m, size_m[0], _open_sides(depth_m, near))
-    half_m = 0.5 * size_m[0]
-    return Box(float(np.clip(x_m, half_m, shelf.width_m - half_m)), y_m, size_m), sure
+        size_m = (width_m, max(THINNEST_M, extent.back_m - extent.front_m), extent.top_m)
+    half_m = 0.5 * np.array(size_m[:2])
+    y_m = extent.front_m + half_m[1] if extent.is_front else extent.back_m - half_m[1]
+    y_m = float(np.clip(y_m, half_m[1], shelf.depth_m - half_m[1]))
+    sure = Box(middle_m, y_m, (min(width_m, size_m[0]), size_m[1], size_m[2]))
+    if not extent.is_front:
+        deep_m = extent.back_m - extent.front_m
+        seen_y_m = 0.5 * (extent.front_m + extent.back_m)
+        sure = Box(middle_m, seen_y_m, (min(width_m, size_m[0]), deep_m, extent.top_m))
+    x_m = _centre(extent.left_m, extent.right_m, size_m[0], _open_sides(depth_m, near))
+    return Box(float(np.clip(x_m, half_m[0], shelf.width_m - half_m[0])), y_m, size_m), sure
 
 
-def _sides(points_m: Floats, near: Bools, caster: BoxCaster) -> tuple[float, float]:
-    """Return where the front that is seen begins and ends; a pixel's centre is inside it."""
-    x_m = points_m[near][:, 0]
-    half_px_m = 0.5 * float(np.median(points_m[near][:, 1] - caster.origin_m[1]))
-    half_px_m /= caster.camera.focal_px
-    return float(x_m.min()) - half_px_m, float(x_m.max()) + half_px_m
+def _extent(points_m: Floats, mask: Bools, caster: BoxCaster) -> tuple[Bools, _Extent]:
+    """Measure an object; also returns the pixels of what is nearest of it."""
+    seen = points_m[mask]
+    front_m, back_m = np.quantile(seen[:, 1], [OUTLIERS, 1.0 - OUTLIERS]).tolist()
+    top_m = float(np.quantile(seen[:, 2], 1.0 - OUTLIERS))
+    near = mask & (points_m[..., 1] < front_m + STEP_M)
+    front = points_m[near]
+    half_px_m = 0.5 * (front_m - float(caster.origin_m[1])) / caster.camera.focal_px
+    left_m, right_m = front[:, 0].min() - half_px_m, front[:, 0].max() + half_px_m
+    tall_m = front[:, 2].max() - front[:, 2].min()
+    is_front = min(right_m - left_m, tall_m) > SLIVER_M
+    return near, _Extent(float(left_m), float(right_m), front_m, back_m, top_m, bool(is_front))
 
 
 def _centre(left_m: float, right_m: float, width_m: float, open_sides: tuple[bool, bool]) -> float:

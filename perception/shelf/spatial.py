@@ -23,6 +23,18 @@ def mask_occupancy(seen: Sequence[Sighting], shape: tuple[int, int]) -> Floats:
     return occupancy
 
 
+def along_shelf(occupancy: Floats) -> Floats:
+    """Return the distribution along the shelf, the same in every row of the image.
+
+    LAX-RAY and the thesis work on this one: only x matters to a push along the shelf.
+
+    Args:
+        occupancy: Shape (height, width).
+    """
+    columns = occupancy.mean(axis=0, keepdims=True)
+    return np.broadcast_to(columns, occupancy.shape)
+
+
 class RunningMinimum:
     """Keeps the least occupancy that each pixel has had (thesis, section 5.1, after LAX-RAY)."""
 

@@ -1,1 +1,1 @@
-"""Shelves to search: what stands on them and how it is arranged, and a fast world without physics."""
+"""Shelves to search: what stands on them, how it is arranged, and a world without physics."""

@@ -110,9 +110,7 @@ def _cut(
     for child in children:
         for leaf in child:
             places_m[leaf.index] += noise_m * (2.0 * rng.random(2) - 1.0)
-    for part, half in zip(
-        (children[:middle], children[middle:]), region.halves(axis), strict=True
-    ):
+    for part, half in zip((children[:middle], children[middle:]), region.halves(axis), strict=True):
         _cut(part, level, half, noise_m, places_m, rng)
 
 

@@ -11,9 +11,11 @@ import numpy as np
 
 from perception.shelf.types import Floats, Shelf
 
-ROUNDS = 400
+ROUNDS = 200
 # Between objects that were moved apart; more than positions are rounded by.
 CLEARANCE_M = 0.002
+# From walls; the same.
+WALL_M = 1e-5
 
 
 def separate(centres_m: Floats, sizes_m: Floats, shelf: Shelf) -> Floats | None:
@@ -28,7 +30,7 @@ def separate(centres_m: Floats, sizes_m: Floats, shelf: Shelf) -> Floats | None:
         New centres, shape (N, 2), or None where they still overlap after the last round.
     """
     half = 0.5 * sizes_m
-    low, high = half, np.array([shelf.width_m, shelf.depth_m]) - half
+    low, high = half + WALL_M, np.array([shelf.width_m, shelf.depth_m]) - half - WALL_M
     places = np.clip(centres_m, low, high)
     for _ in range(ROUNDS):
         pairs = _overlaps(places, half)

@@ -48,7 +48,9 @@ class ShelfObject(_Document):
     def _ordered(self) -> "ShelfObject":
         for low, high in (self.width_m, self.depth_m, self.height_m):
             if low > high:
-                raise ValueError(f"sizes of {self.name!r}: got [{low}, {high}]; expected low <= high")
+                raise ValueError(
+                    f"sizes of {self.name!r}: got [{low}, {high}]; expected low <= high"
+                )
         return self
 
     def draw_size(self, scale: float, rng: np.random.Generator) -> Size:

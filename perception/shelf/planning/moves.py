@@ -1,4 +1,4 @@
-"""The two actions of a search (thesis, section 5.2): a push along the shelf, and a change of place."""
+"""The two actions of a search: a push along the shelf, and a change of place (thesis, 5.2)."""
 
 from dataclasses import dataclass
 

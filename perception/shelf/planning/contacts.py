@@ -1,0 +1,50 @@
+"""What moves have met without its being seen: it is in the way until something else is known."""
+
+import numpy as np
+
+from perception.shelf.planning.moves import Move, Place
+from perception.shelf.planning.room import footprints
+from perception.shelf.types import Box, Floats
+
+# How much room is taken to be filled where something was met.
+THICK_M = 0.01
+
+
+class Contacts:
+    """Footprints of what was met; a search that forgot them would run into it again and again."""
+
+    def __init__(self) -> None:
+        """Begin with none."""
+        self._met: list[Floats] = []
+
+    @property
+    def footprints(self) -> Floats:
+        """Footprints of what was met, shape (M, 4)."""
+        return np.array(self._met, dtype=np.float64).reshape(-1, 4)
+
+    def push_stopped(self, box: Box, sign: int) -> None:
+        """Something stands beside a box, where it came to rest, on the side of its push.
+
+        Args:
+            box: The pushed object, afterwards.
+            sign: +1 when it was pushed along x, -1 against it.
+        """
+        own = footprints([box])[0]
+        side_m = own[2] if sign > 0 else own[0]
+        low_m, high_m = sorted((side_m, side_m + sign * THICK_M))
+        self._met.append(np.array([low_m, own[1], high_m, own[3]]))
+
+    def blade_stopped(self, box: Box, sign: int) -> None:
+        """The blade did not fit in at the side from which it was to push."""
+        self.push_stopped(box, -sign)
+
+    def place_taken(self, box: Box) -> None:
+        """Something stands where a box was to be put down, or in front of it."""
+        self._met.append(footprints([box])[0])
+
+
+def push_sign(move: Move) -> int:
+    """Return +1 or -1 for pushes along or against x, 0 for other moves."""
+    if isinstance(move, Place):
+        return 0
+    return 1 if move.shift_m > 0.0 else -1
