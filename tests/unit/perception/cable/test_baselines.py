@@ -185,7 +185,7 @@ class TestGreedyTracer:
         from perception.cable.baselines.greedy_tracer import GreedyTracer
         from perception.models.store import FOLDER
 
-        return GreedyTracer(FOLDER / "tracer_v2")
+        return GreedyTracer(FOLDER / "tracer_v3")
 
     def _traced(self, tracer, drawing, start, ends=()):
         image = render(drawing, np.random.default_rng(6), connectors=False)
