@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from executive.core.errors import DeviceError
+from executive.core.work import Worker
 from robots.drivers.messages import (
     Command,
     EmergencyStop,
@@ -47,6 +48,7 @@ class Controller:
         limits: JointLimits,
         cycle_s: float,
         between_m: Mapping[Arm, float],
+        worker: Worker,
     ) -> None:
         """Begin at rest, grippers open.
 
@@ -55,8 +57,9 @@ class Controller:
             limits: Of motions and stops.
             cycle_s: Length of a cycle.
             between_m: Width of what is between the fingers.
+            worker: Does what takes longer than a cycle.
         """
-        self._limits, self._cycle_s = limits, cycle_s
+        self._limits, self._cycle_s, self._worker = limits, cycle_s, worker
         self.mode: Mode = "rest"
         self._playback: Playback | None = None
         self._latched = False
@@ -147,7 +150,7 @@ class Controller:
         self._show(stop_trajectory(state, limits), mode)
 
     def _show(self, trajectory: Trajectory, mode: Mode) -> None:
-        self.mode, self._playback = mode, Playback(trajectory, self._limits)
+        self.mode, self._playback = mode, Playback(trajectory, self._limits, self._worker)
 
 
 def _refuse_beyond_limits(trajectory: SampledTrajectory, limits: JointLimits) -> None:

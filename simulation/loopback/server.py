@@ -6,6 +6,7 @@ import time
 from collections.abc import Callable
 from contextlib import suppress
 
+from executive.core.work import InlineWorker, ThreadWorker
 from robots.drivers.messages import (
     VERSION,
     Advance,
@@ -73,7 +74,8 @@ class Server:
 
     def _new_controller(self) -> Controller:
         settings = self._settings
-        return Controller(HOME_RAD, yumi_limits(), settings.cycle_s, settings.between_m)
+        worker = InlineWorker() if settings.lockstep else ThreadWorker()
+        return Controller(HOME_RAD, yumi_limits(), settings.cycle_s, settings.between_m, worker)
 
     def _now_s(self) -> float:
         if self._settings.lockstep:
@@ -119,7 +121,7 @@ class Server:
         self._wire, self._station = wire, station
         now_s = self._now_s()
         self._send(station.welcome(now_s, resumed))
-        self._send(station.state(now_s))
+        self._send(station.state())
 
     def _refusal_of(self, hello: Hello | None) -> str:
         if hello is None or hello.version != VERSION:

@@ -89,12 +89,12 @@ class Station:
             self._cycle(self.next_s)
         return self._going.due(now_s)
 
-    def state(self, now_s: float) -> ControllerState:
-        """Return everything that a driver has to know."""
+    def state(self) -> ControllerState:
+        """Return everything that a driver has to know, as of the last cycle."""
         controller = self._controller
         left, right = (controller.fingers[arm] for arm in ARMS)
         return ControllerState(
-            stamp_s=now_s,
+            stamp_s=self.next_s - self._settings.cycle_s,
             mode=controller.mode,
             held=controller.held,
             positions_rad=row(controller.positions_rad),
@@ -123,7 +123,7 @@ class Station:
                 f"life every {self._settings.silence_s:g} s"
             )
         self._controller.advance()
-        self._going.put(self.state(now_s), now_s)
+        self._going.put(self.state(), now_s)
 
     def _catch_breath(self, late_s: float) -> None:
         """Leave cycles out that were missed: joints cannot make up for them in one."""

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from executive.core.work import InlineWorker
 from robots.drivers.messages import Beat, EmergencyStop, Execute, GripCommand, Hold, Stop, numbers
 from robots.drivers.samples import SampledTrajectory
 from robots.limits import yumi_limits
@@ -22,7 +23,7 @@ class Session:
 
     def __init__(self, **settings):
         self.settings = LoopbackSettings(lockstep=True, **settings)
-        controller = Controller(HOME_RAD, LIMITS, CYCLE_S, self.settings.between_m)
+        controller = Controller(HOME_RAD, LIMITS, CYCLE_S, self.settings.between_m, InlineWorker())
         self.station = Station(controller, self.settings, "me", 0.0)
         self.now_s = 0.0
         self.states = []
