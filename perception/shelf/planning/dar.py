@@ -72,12 +72,14 @@ class DistributionAreaReduction:
         found = options(sighting, seen, view, self._shelf, self._caster, self._reach, met)
         if not found:
             return None
-        left = self._overlaps(found, occupancy)
+        left = self.overlaps(found, occupancy)
         costs = left + HASTE_1_M * cover * np.array([option.far_m for option in found])
         pick = int(np.argmin(costs))
         return found[pick].move if left[pick] <= (1.0 - LEAST_GAIN) * cover else None
 
-    def _overlaps(self, found: Sequence[Option], occupancy: Floats) -> Floats:
-        """Return how much each object would cover where it would stand, shape (K,)."""
+    def overlaps(self, found: Sequence[Option], occupancy: Floats) -> Floats:
+        """Return how much of an occupancy each object would cover where it would stand, (K,)."""
+        if not found:
+            return np.zeros(0)
         shown = self._caster.cast(*corners([option.box for option in found]))
         return shown.sums(occupancy.ravel()[shown.pixel])

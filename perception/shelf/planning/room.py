@@ -14,6 +14,8 @@ from perception.shelf.types import Bools, Box, Floats, Shelf
 
 # Objects that touch do not collide.
 TOUCH_M = 1e-6
+# Somewhere before the shelf.
+OUTSIDE_M = -1.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,13 +61,23 @@ def blade_fits(moved: Floats, others: Floats, sign: int, shelf: Shelf, reach: Re
     """
     if reach.blade_m == 0.0:
         return True
-    side_m = moved[0] if sign > 0 else moved[2]
-    edges_m = sorted((side_m, side_m - sign * reach.blade_m))
-    if edges_m[0] < -TOUCH_M or edges_m[1] > shelf.width_m + TOUCH_M:
+    lane = blade_lane(moved, sign, reach)
+    if lane[0] < -TOUCH_M or lane[2] > shelf.width_m + TOUCH_M:
         return False
-    deep_m = moved[1] + min(reach.overlap_m, moved[3] - moved[1])
-    lane = np.array([edges_m[0], -1.0, edges_m[1], deep_m])
     return not bool(overlapping(lane, others).any())
+
+
+def blade_lane(moved: Floats, sign: int, reach: Reach) -> Floats:
+    """Return the footprint that the blade passes over on its way in, shape (4,)."""
+    side_m = moved[0] if sign > 0 else moved[2]
+    low_m, high_m = sorted((side_m, side_m - sign * reach.blade_m))
+    deep_m = moved[1] + min(reach.overlap_m, moved[3] - moved[1])
+    return np.array([low_m, OUTSIDE_M, high_m, deep_m])
+
+
+def front_lane(moved: Floats) -> Floats:
+    """Return the footprint that an object passes over on its way out, shape (4,)."""
+    return np.array([moved[0], OUTSIDE_M, moved[2], moved[1]])
 
 
 def push_room_m(moved: Floats, others: Floats, sign: int, shelf: Shelf, reach: Reach) -> float:
@@ -82,8 +94,7 @@ def push_room_m(moved: Floats, others: Floats, sign: int, shelf: Shelf, reach: R
 
 def way_out(moved: Floats, others: Floats) -> bool:
     """Say whether nothing stands in front of an object, so that it comes out straight."""
-    lane = np.array([moved[0], -1.0, moved[2], moved[1]])
-    return not bool(overlapping(lane, others).any())
+    return not bool(overlapping(front_lane(moved), others).any())
 
 
 def fits_at(places: Floats, others: Floats, shelf: Shelf) -> Bools:
@@ -101,5 +112,5 @@ def fits_at(places: Floats, others: Floats, shelf: Shelf) -> Bools:
     inside &= places[:, 2] <= shelf.width_m + TOUCH_M
     inside &= places[:, 3] <= shelf.depth_m + TOUCH_M
     swept = places.copy()
-    swept[:, 1] = -1.0
+    swept[:, 1] = OUTSIDE_M
     return inside & ~overlapping(swept[:, None, :], others[None, :, :]).any(axis=1)

@@ -9,6 +9,7 @@ from perception.shelf.casting import BoxCaster
 from perception.shelf.hidden_poses import HiddenPoses, PoseBelief
 from perception.shelf.organisation import organisation_of
 from perception.shelf.original import OriginalScene
+from perception.shelf.planning.clearing import ReductionWithClearing
 from perception.shelf.planning.contacts import Contacts, push_sign
 from perception.shelf.planning.dar import DistributionAreaReduction
 from perception.shelf.planning.room import Reach
@@ -35,6 +36,7 @@ class Way:
         product: Where semantics are multiplied in: per `pose`, or per `column` as in the thesis.
         calibrated: Whether affinities are mixed by the estimated degree of organisation.
         flat: Whether the distribution is reduced to one along the shelf.
+        clearing: Whether a stuck search clears its way.
         reach: What the tool can do.
     """
 
@@ -43,6 +45,7 @@ class Way:
     product: str = "column"
     calibrated: bool = False
     flat: bool = False
+    clearing: bool = False
     reach: Reach = Reach()  # noqa: RUF009 - frozen
 
 
@@ -65,7 +68,8 @@ class Searcher:
         self.poses = HiddenPoses(self.sizes[scene.target], self.shelf, self.caster)
         self.belief, self.minimum = PoseBelief(self.poses), RunningMinimum()
         self.original, self.contacts = OriginalScene(), Contacts()
-        self.policy = DistributionAreaReduction(self.shelf, self.caster, way.reach)
+        policy = ReductionWithClearing if way.clearing else DistributionAreaReduction
+        self.policy = policy(self.shelf, self.caster, way.reach)
 
     def shows(self):
         return self.world.visible_share(self.target) >= SHOWN
