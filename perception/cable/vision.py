@@ -21,7 +21,7 @@ from perception.cable.parts import (
     EyeName,
     TracerName,
 )
-from perception.cable.polyline import resample
+from perception.cable.polyline import arc_lengths, resample
 from perception.cable.telling import telling_question
 from perception.cable.tracers.analytic import AnalyticTracer
 from perception.cable.types import CableScene, Crossing, Endpoint, Knot, Points, Reading, Trace
@@ -31,6 +31,8 @@ from perception.camera import GreyImage
 REACHED_PX = 20.0
 # A trace runs through an end that lies this near to it.
 THROUGH_PX = 4.0
+# A trace of which more than this share lies on another one follows the same cable.
+SAME_CABLE = 0.5
 # A second point this far into the cable tells a tracer which way to go from an end.
 AHEAD_PX = 4.0
 # Other ways to read a cable than the likeliest are weighed down to this belief, so many at most.
@@ -162,7 +164,7 @@ class GreyImageVision:
             ways = self._ways(image, np.stack([endpoint.position_px, ahead]), endpoints)
             if ways:
                 cables.append(ways)
-        return cables
+        return _distinct(cables)
 
     def _ways(
         self, image: GreyImage, start_px: Points, endpoints: Sequence[Endpoint]
@@ -186,6 +188,26 @@ class GreyImageVision:
             reading_of(ways[0], number, crossings),
             *(reading_of(way, 0, self.crossings(image, [way])) for way in others),
         ]
+
+
+def _distinct(cables: Sequence[tuple[Trace, ...]]) -> list[tuple[Trace, ...]]:
+    """Return each cable once, the longest first; one seen from two of its ends may come twice."""
+    kept: list[tuple[Trace, ...]] = []
+    for ways in sorted(cables, key=lambda ways: -ways[0].probability * _length_px(ways[0])):
+        if not any(_runs_along(ways[0], other[0]) for other in kept):
+            kept.append(ways)
+    return sorted(kept, key=lambda ways: -_length_px(ways[0]))
+
+
+def _length_px(trace: Trace) -> float:
+    return float(arc_lengths(trace.points_px)[-1])
+
+
+def _runs_along(trace: Trace, other: Trace) -> bool:
+    """Say whether a trace lies on another one for the most of its length."""
+    points, line = (resample(each.points_px, THROUGH_PX) for each in (trace, other))
+    gaps = np.linalg.norm(points[:, None] - line[None], axis=2).min(axis=1)
+    return float((gaps <= THROUGH_PX).mean()) > SAME_CABLE
 
 
 def _accounts_for(trace: Trace, endpoint: Endpoint) -> bool:

@@ -26,17 +26,17 @@ def prepare(image: GreyImage) -> Maps:
         image: Grey image, shape (H, W).
 
     Returns:
-        Shape (CHANNELS, H', W'), sides rounded up to multiples of `MULTIPLE`; the border is
-        repeated.
+        Shape (CHANNELS, H', W'), sides rounded up to multiples of `MULTIPLE`; what is
+        beyond the border is mirrored, as repeated noise would look like thin strands.
     """
     rows, columns = image.shape
     padded = cv2.copyMakeBorder(
-        image, 0, -rows % MULTIPLE, 0, -columns % MULTIPLE, cv2.BORDER_REPLICATE
+        image, 0, -rows % MULTIPLE, 0, -columns % MULTIPLE, cv2.BORDER_REFLECT_101
     )
     whole = max(float(cv2.meanStdDev(image)[1][0, 0]), LEAST)
     window = (NEAR_PX, NEAR_PX)
-    middle = cv2.boxFilter(padded, cv2.CV_32F, window, borderType=cv2.BORDER_REPLICATE)
-    square = cv2.sqrBoxFilter(padded, cv2.CV_32F, window, borderType=cv2.BORDER_REPLICATE)
+    middle = cv2.boxFilter(padded, cv2.CV_32F, window, borderType=cv2.BORDER_REFLECT_101)
+    square = cv2.sqrBoxFilter(padded, cv2.CV_32F, window, borderType=cv2.BORDER_REFLECT_101)
     near = np.sqrt(np.maximum(square - middle * middle, 0.0) + np.float32(LEAST_SHARE * whole) ** 2)
     maps = np.empty((CHANNELS, *padded.shape), np.float32)
     levels = (np.arange(256, dtype=np.float32) - _median(image)) / np.float32(whole)

@@ -13,13 +13,15 @@ from perception.cable.plug_ends import find_ends
 from perception.cable.plugs import Plug, plug_of
 from perception.cable.sight.seen import Seen
 from perception.cable.sight.sight import Sight
-from perception.cable.types import Endpoint
+from perception.cable.types import Endpoint, Points
 from perception.camera import GreyImage
 
 Bools = NDArray[np.bool_]
 
 # Smaller things, in squared cable widths, are neither cable nor connector.
 LEAST_CABLE_WIDTHS2, LEAST_PLUG_WIDTHS2 = 4.0, 1.5
+# Pieces smaller than this share of the largest are edges of robots and cloths.
+LEAST_OF_LARGEST = 0.08
 # Pieces thinner than this share of the cable's width are edges of something else.
 LEAST_WIDTH = 0.5
 # Ends nearer than this to each other are one [cable widths].
@@ -49,15 +51,18 @@ class SightEye:
         seen, observation = self._sight.look(image), self.observe(image)
         if observation is None:
             return seen.endpoints
+        width_px = observation.mask.width_px
+        near = radii(~observation.mask.cable)
+        sure = [end for end in seen.endpoints if _at(near, end.position_px) <= width_px]
         dead = find_ends(observation.mask, observation.graph)
-        known = np.array([end.position_px for end in seen.endpoints]).reshape(-1, 2)
-        apart_px = SAME_END_WIDTHS * observation.mask.width_px
+        known = np.array([end.position_px for end in sure]).reshape(-1, 2)
+        apart_px = SAME_END_WIDTHS * width_px
         more = [
             end
             for end in dead
             if (np.linalg.norm(known - end.position_px, axis=1) > apart_px).all()
         ]
-        return tuple(sorted([*seen.endpoints, *more], key=lambda end: -end.probability))
+        return tuple(sorted([*sure, *more], key=lambda end: -end.probability))
 
     def _observe(self, pixels: bytes, shape: tuple[int, int]) -> Observation | None:
         image = np.frombuffer(pixels, dtype=np.uint8).reshape(shape)
@@ -66,12 +71,20 @@ class SightEye:
         return observation_of(mask, lambda closed: _plugs(seen, closed)) if mask else None
 
 
+def _at(distances_px: NDArray[np.float32], point_px: Points) -> float:
+    rows, columns = distances_px.shape
+    column, row = np.rint(point_px).astype(int)
+    return float(distances_px[min(max(row, 0), rows - 1), min(max(column, 0), columns - 1)])
+
+
 def mask_of(seen: Seen, image: GreyImage) -> CableMask | None:
     """Return the cable pixels of a look; None where there are none."""
     if seen.width_px is None:
         return None
     cable = _large(seen.cable_pixels, LEAST_CABLE_WIDTHS2 * seen.width_px**2)
     cable = _wide(cable, LEAST_WIDTH * seen.width_px)
+    areas_px2 = cv2.connectedComponentsWithStats(cable.astype(np.uint8))[2][1:, cv2.CC_STAT_AREA]
+    cable = _large(cable, LEAST_OF_LARGEST * float(areas_px2.max(initial=0)))
     if not cable.any() or cable.all():
         return None
     table = image[~cable].astype(float)

@@ -33,7 +33,7 @@ Observe = Callable[[GreyImage], Observation | None]
 # A start with no more points than this at a known end tells nothing more than that end.
 MOST_AT_END = 2
 # With less belief in the best trace than this, other widths of the cable are tried.
-DOUBTFUL, OTHER_WIDTHS = 0.5, (1.5, 0.7)
+OTHER_WIDTHS = (1.5, 0.7)
 
 
 class Weights(BaseModel):
@@ -173,9 +173,7 @@ def _best_belief(posterior: TracePosterior) -> float:
 
 def _is_doubtful(posterior: TracePosterior) -> bool:
     best = posterior.best
-    if best is None or best.end in {TraceEnd.LOST, TraceEnd.RETRACE}:
-        return True
-    return best.probability < DOUBTFUL
+    return best is None or best.end in {TraceEnd.LOST, TraceEnd.RETRACE}
 
 
 def _holds(cable: NDArray[np.bool_], points_px: Points) -> bool:
