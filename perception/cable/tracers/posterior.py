@@ -32,7 +32,7 @@ FILE = "posterior.json"
 Observe = Callable[[GreyImage], Observation | None]
 # A start with no more points than this at a known end tells nothing more than that end.
 MOST_AT_END = 2
-# With less belief in the best trace than this, other widths of the cable are tried.
+# Widths that are tried, too, as shares of the seen one, where a trace is lost.
 OTHER_WIDTHS = (1.5, 0.7)
 
 
