@@ -16,8 +16,8 @@ Ints = NDArray[np.int64]
 
 # A ray along a plane would divide by nothing.
 PARALLEL = 1e-12
-# Boxes are cast together while their windows hold no more pixels than this.
-BATCH_PX = 400_000
+# So many boxes are cast together: all in one take more memory than is fast.
+BATCH = 64
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -69,23 +69,16 @@ class BoxCaster:
         Returns:
             Pixels inside the image only, box after box.
         """
-        first, size = self._windows(low_m, high_m)
-        step = max(1, int(BATCH_PX // max(1, int(size.prod()))))
+        first, last = self._windows(low_m, high_m)
+        # Boxes next to each other in the list have windows of much the same size.
         parts = [
-            self._cast_some(
-                low_m[at : at + step], high_m[at : at + step], first[at : at + step], size
-            )
-            for at in range(0, len(low_m), step)
+            self._cast_some(low_m[at:to], high_m[at:to], first[at:to], last[at:to], at)
+            for at, to in ((at, at + BATCH) for at in range(0, len(low_m), BATCH))
         ]
         if not parts:
             return Silhouettes(np.zeros(0, np.int64), np.zeros(0), np.zeros(0, np.int64), 0)
-        boxes = [part[2] + index * step for index, part in enumerate(parts)]
-        return Silhouettes(
-            np.concatenate([part[0] for part in parts]),
-            np.concatenate([part[1] for part in parts]),
-            np.concatenate(boxes),
-            len(low_m),
-        )
+        pixel, depth_m, box = (np.concatenate(arrays) for arrays in zip(*parts, strict=True))
+        return Silhouettes(pixel, depth_m, box, len(low_m))
 
     def inside(self, low_m: Floats, high_m: Floats) -> tuple[Floats, Floats]:
         """Return where every ray enters and leaves one box, shape (height, width) each.
@@ -97,29 +90,28 @@ class BoxCaster:
         return near.reshape(shape), far.reshape(shape)
 
     def _windows(self, low_m: Floats, high_m: Floats) -> tuple[Ints, Ints]:
-        """Return each box's first (row, column) and the (rows, columns) that are enough for all."""
+        """Return each box's first and last (row, column), shape (N, 2)."""
         pick = np.array([[i, j, k] for i in (0, 1) for j in (0, 1) for k in (0, 1)], dtype=bool)
         points_m = np.where(pick, high_m[:, None, :], low_m[:, None, :])
         points_px = self.camera.project(points_m.reshape(-1, 3)).reshape(-1, 8, 2)[..., ::-1]
         first = np.floor(points_px.min(axis=1)).astype(np.int64)
-        last = np.ceil(points_px.max(axis=1)).astype(np.int64)
-        size = (last - first + 1).max(axis=0) if len(first) else np.zeros(2, np.int64)
-        return first, size
+        return first, np.ceil(points_px.max(axis=1)).astype(np.int64)
 
     def _cast_some(
-        self, low_m: Floats, high_m: Floats, first: Ints, size: Ints
+        self, low_m: Floats, high_m: Floats, first: Ints, last: Ints, number: int
     ) -> tuple[Ints, Floats, Ints]:
+        size = (last - first + 1).max(axis=0)
         rows = first[:, 0, None, None] + np.arange(size[0])[None, :, None]
         columns = first[:, 1, None, None] + np.arange(size[1])[None, None, :]
         inside = (rows >= 0) & (rows < self.camera.height_px)
         inside = inside & (columns >= 0) & (columns < self.camera.width_px)
-        box, row, column = np.nonzero(inside)
-        pixel = (first[box, 0] + row) * self.camera.width_px + first[box, 1] + column
+        pixel = (rows * self.camera.width_px + columns)[inside]
+        box = np.repeat(np.arange(len(first)), inside.sum(axis=(1, 2)))
         near, far = _clip(
             self._inverse[pixel], low_m[box] - self.origin_m, high_m[box] - self.origin_m
         )
         hit = (near <= far) & (near > 0.0)
-        return pixel[hit], near[hit], box[hit]
+        return pixel[hit], near[hit], box[hit] + number
 
 
 def _clip(inverse: Floats, low_m: Floats, high_m: Floats) -> tuple[Floats, Floats]:

@@ -10,7 +10,7 @@ from enum import StrEnum
 
 import numpy as np
 
-from perception.camera import CameraModel
+from perception.camera import CameraModel, DepthImage
 from perception.shelf.casting import BoxCaster
 from perception.shelf.planning.moves import Move, Place, Push
 from perception.shelf.planning.room import (
@@ -21,7 +21,7 @@ from perception.shelf.planning.room import (
     push_room_m,
     way_out,
 )
-from perception.shelf.types import NOTHING, Box, Floats, ShelfView
+from perception.shelf.types import NOTHING, Box, Floats, Segments, ShelfView
 from simulation.shelf.cameras import front_camera
 from simulation.shelf.rendering import ShelfRenderer
 from simulation.shelf.scenes import Scene
@@ -102,14 +102,8 @@ class ShelfWorld:
 
     def look(self) -> ShelfView:
         """Take a view; detection is perfect, as in the thesis's simulations (section 7.4)."""
-        names = list(self._boxes)
-        depth_m, segments = self._renderer.render(list(self._boxes.values()))
-        seen = np.unique(segments[segments != NOTHING])
-        # Numbers of hidden objects must not show through.
-        numbers = np.full(len(names) + 1, NOTHING, dtype=np.int16)
-        numbers[seen] = np.arange(len(seen))
-        labels = tuple(names[index] for index in seen)
-        return ShelfView(self._noisy(depth_m), numbers[segments], labels, self.camera)
+        depth_m, segments, labels = self._shown()
+        return ShelfView(self._noisy(depth_m), segments, labels, self.camera)
 
     def visible_share(self, name: str) -> float:
         """Return how much of an object's silhouette is seen, in [0, 1]; truth, for scoring."""
@@ -118,12 +112,22 @@ class ShelfWorld:
 
     def act(self, move: Move) -> MoveResult:
         """Do one action; where it fails, nothing moves."""
-        if move.label not in self.look().labels:
+        if move.label not in self._shown()[2]:
             return MoveResult(MoveFailure.NOT_SEEN)
         others = footprints([box for name, box in self._boxes.items() if name != move.label])
         if isinstance(move, Push):
             return self._push(move, others)
         return self._place(move, others)
+
+    def _shown(self) -> tuple[Floats, Segments, tuple[str, ...]]:
+        """Return depth, segments and labels of what is in view."""
+        names = list(self._boxes)
+        depth_m, segments = self._renderer.render(list(self._boxes.values()))
+        seen = np.unique(segments[segments != NOTHING])
+        # Numbers of hidden objects must not show through; NOTHING, -1, finds the last entry.
+        numbers = np.full(len(names) + 1, NOTHING, dtype=np.int16)
+        numbers[seen] = np.arange(len(seen))
+        return depth_m, numbers[segments], tuple(names[index] for index in seen)
 
     def _push(self, move: Push, others: Floats) -> MoveResult:
         box, shelf = self._boxes[move.label], self._scene.shelf
@@ -148,7 +152,7 @@ class ShelfWorld:
         self._boxes[move.label] = put
         return MoveResult(None, float(np.hypot(put.x_m - box.x_m, put.y_m - box.y_m)))
 
-    def _noisy(self, depth_m: Floats) -> "np.ndarray[tuple[int, ...], np.dtype[np.float32]]":
+    def _noisy(self, depth_m: Floats) -> DepthImage:
         if self._noise.spread_m > 0.0:
             depth_m = depth_m + self._rng.normal(0.0, self._noise.spread_m, depth_m.shape)
         if self._noise.lost_share > 0.0:
