@@ -5,7 +5,7 @@ believes in pixels is laid on the table here, where cameras and robots may both 
 """
 
 import logging
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -26,8 +26,10 @@ from robots.interfaces import Floats
 from robots.placement import table_scene
 from robots.viewer import CameraCone, LiveViewer, SceneFrame, Stage
 from robots.viewer import write_html as write_page
+from robots.viewer.rerun_file import RerunFile, need_rerun
 
 _SCENE_TOPIC = "/scene"
+_JOINT_STATES_TOPIC = "/joint_states"
 _BELIEF_KEY = ":knotted_probability"
 _SHOWN_TYPES = (Trace, CameraFrame, float)
 
@@ -48,6 +50,13 @@ class _Scene(BaseModel):
     links: dict[str, list[float]]
     cable_nodes_m: list[list[float]]
     cable_radius_m: float
+
+
+class _JointStates(BaseModel):
+    """A message of the stream of joint states; see `simulation.streams`."""
+
+    names: tuple[str, ...] = ()
+    positions: tuple[float, ...] = ()
 
 
 class _Camera(BaseModel):
@@ -192,6 +201,40 @@ def write_html(recording: Path, page: Path) -> None:
     run = Recording.open(recording)
     title = f"{run.header.mission}, seed {run.header.seed}"
     write_page(_stage(), scene_frames(run), page, title=title)
+
+
+def write_rerun(recording: Path, file: Path) -> None:
+    """Write a recording as a file for the Rerun viewer: scene, images, joints, what was done.
+
+    Raises:
+        InputError: The package for it is not installed.
+        RecordingError: The recording cannot be read, or the file not be written.
+    """
+    need_rerun("--rerun")
+    run = Recording.open(recording)
+    with RerunFile(file, f"{run.header.mission}, seed {run.header.seed}") as drawn:
+        drawn.set_stage(yumi(), table_scene())
+        doing = ""
+        for frame in scene_frames(run):
+            drawn.show(frame)
+            if frame.caption != doing:
+                doing = frame.caption
+                drawn.text("doing", frame.time_s, doing)
+        for image in run.images():
+            drawn.image("image", image.time_s, image.png)
+        for name, rows in _joint_curves(run).items():
+            drawn.curve(f"joints/{name}", *zip(*rows, strict=True))
+
+
+def _joint_curves(run: Recording) -> Mapping[str, Sequence[tuple[float, float]]]:
+    """Return time and position of each joint, in the order of time."""
+    curves: dict[str, list[tuple[float, float]]] = {}
+    for message in run.streams():
+        if message.topic == _JOINT_STATES_TOPIC:
+            joints = _JointStates.model_validate_json(message.data)
+            for name, position in zip(joints.names, joints.positions, strict=True):
+                curves.setdefault(name, []).append((message.time_s, position))
+    return curves
 
 
 def scene_frames(recording: Recording) -> Iterator[SceneFrame]:

@@ -13,7 +13,7 @@ from rich.text import Text
 from executive.cli.console import chatter, results
 from executive.cli.inspect_page import serve_page
 from executive.cli.recordings import RunArgument
-from executive.core.errors import InputError
+from executive.core.errors import InputError, recording_named_by_the_user
 from executive.engine.recording.reader import Recording
 from executive.inspector.changes import Change, matching_nodes, status_changes
 from executive.inspector.documents import change_document, tick_document
@@ -38,6 +38,10 @@ def inspect(
         bool,
         typer.Option("--web", help="Serve a page for the browser; live while the run goes on."),
     ] = False,
+    rerun: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="Write scene, images and joints for the Rerun viewer."),
+    ] = None,
     host: Annotated[
         str, typer.Option(help="Address of the page; others than this machine's need its token.")
     ] = "127.0.0.1",
@@ -52,6 +56,9 @@ def inspect(
 
     On a terminal, an interactive inspector opens: `?` lists its keys.
     """
+    if rerun is not None:
+        _write_rerun(recording, rerun)
+        return
     if web:
         serve_page(recording, chatter(), host=host, port=port, open_browser=open_browser)
         return
@@ -69,6 +76,14 @@ def inspect(
         typer.echo(json.dumps(tick_document(run, number, nodes)))
     else:
         console.print(summary_view(run), "", tick_view(run, number, nodes))
+
+
+def _write_rerun(recording: Path, file: Path) -> None:
+    from executive.app.views import write_rerun
+
+    with recording_named_by_the_user():
+        write_rerun(recording, file)
+    chatter().print(f"{file}: look at it with: rerun {file}", soft_wrap=True)
 
 
 def _look(path: Path, tick: int | None, node: str | None) -> None:

@@ -14,7 +14,12 @@ ROOT = Path(__file__).parents[2]
 MAX_BYTES = 2_000_000
 MOST_OF_WEIGHTS, ALL_WEIGHTS = 30_000_000, 80_000_000
 # Import names whose distribution says nothing of them, or is a part of another one.
-OWNERS = {"coal": ["pin"], "pinocchio": ["pin"], "pydantic_core": ["pydantic"]}
+OWNERS = {
+    "coal": ["pin"],
+    "pinocchio": ["pin"],
+    "pydantic_core": ["pydantic"],
+    "rerun": ["rerun-sdk"],
+}
 ABSOLUTE_PATH = re.compile(r"(?<![\w.~<])/(?:home|root|tmp|work|Users)/[\w.]")
 
 

@@ -5,7 +5,7 @@ import pytest
 from toy_runs import RUNNING, Leaf, built, header_of
 
 from executive.app import views
-from executive.core.errors import DeviceError, RecordingError
+from executive.core.errors import DeviceError, InputError, RecordingError
 from executive.core.world import StreamMessage
 from executive.engine.blackboard import Write
 from executive.engine.recording.reader import Recording
@@ -13,6 +13,7 @@ from executive.engine.recording.writer import RecordingWriter
 from executive.engine.ticks import NodeStatus, Tick
 from perception.cable.types import Trace, TraceEnd
 from perception.camera import CameraFrame, CameraModel
+from robots.viewer import rerun_file
 from simulation.streams import scene_json
 
 DOWN = np.diag([1.0, -1.0, -1.0, 1.0])
@@ -47,7 +48,8 @@ TICKS = [
 
 def play(*observers) -> None:
     """Tell observers of the toy run: each tick is followed by what the cell streamed."""
-    other = StreamMessage("/joint_states", "JointStates", 0.05, b"{}")
+    joints = b'{"names": ["left_joint_1"], "positions": [0.5], "velocities": [0.0]}'
+    other = StreamMessage("/joint_states", "JointStates", 0.05, joints)
     for tick in TICKS:
         for observer in observers:
             observer.on_tick(tick)
@@ -104,6 +106,24 @@ def test_replay_is_a_page_named_after_the_run(recording, tmp_path):
     page = tmp_path / "run.html"
     views.write_html(recording, page)
     assert "<title>toy, seed 3</title>" in page.read_text(encoding="utf-8")
+
+
+def test_a_rerun_file_has_scene_images_joints_and_what_was_done(recording, tmp_path):
+    rerun = pytest.importorskip("rerun")
+    views.write_rerun(recording, tmp_path / "run.rrd")
+    chunks = rerun.chunk.RrdReader(str(tmp_path / "run.rrd")).stream().to_chunks()
+    rows = {chunk.entity_path: chunk.num_rows for chunk in chunks if not chunk.is_static}
+    assert rows["/world/robot/left_link_1"] == rows["/world/cable"] == 3
+    assert rows["/world/trace"] == rows["/world/camera"] == rows["/image"] == 1
+    assert rows["/doing"] == 2
+    assert rows["/joints/left_joint_1"] == len(TICKS)
+
+
+def test_without_rerun_the_message_says_what_to_install(recording, tmp_path, monkeypatch):
+    monkeypatch.setattr(rerun_file, "find_spec", lambda _: None)
+    with pytest.raises(InputError, match=r"--rerun: needs rerun-sdk, .* try pip install 'cellwri"):
+        views.write_rerun(recording, tmp_path / "run.rrd")
+    assert not (tmp_path / "run.rrd").exists()
 
 
 def test_a_recording_without_a_scene_has_no_replay(tmp_path):
