@@ -38,6 +38,11 @@ class Contacts:
         """The blade did not fit in at the side from which it was to push."""
         self.push_stopped(box, -sign)
 
+    def way_blocked(self, box: Box) -> None:
+        """Something stands in front of a box, which did not come out."""
+        low_x_m, front_m, high_x_m, _ = footprints([box])[0]
+        self._met.append(np.array([low_x_m, front_m - THICK_M, high_x_m, front_m]))
+
     def place_taken(self, box: Box) -> None:
         """Something stands where a box was to be put down, or in front of it."""
         self._met.append(footprints([box])[0])

@@ -115,6 +115,8 @@ class Searcher:
         result, sign = self.world.act(move), push_sign(move)
         if result.failure is MoveFailure.NO_BLADE:
             self.contacts.blade_stopped(box, sign)
+        elif result.failure is MoveFailure.OBSTRUCTED:
+            self.contacts.way_blocked(box)
         elif result.failure is MoveFailure.NO_PLACE:
             self.contacts.place_taken(box.at(move.x_m, move.y_m))
         elif result.failure is MoveFailure.NO_ROOM or result.short_m > SHORT_M:

@@ -84,6 +84,24 @@ def test_what_was_met_is_not_run_into_again():
     assert push_sign(Place("thing 0", 0.1, 0.1)) == 0
 
 
+def test_each_kind_of_contact_stops_the_move_that_met_it():
+    box, own = Box(0.3, 0.1, (0.1, 0.08, 0.2)), np.array([0.25, 0.06, 0.35, 0.14])
+    contacts = [Contacts() for _ in range(4)]
+    contacts[0].push_stopped(box, 1)
+    contacts[1].blade_stopped(box, 1)
+    contacts[2].way_blocked(box)
+    contacts[3].place_taken(box)
+    stopped = [one.footprints for one in contacts]
+    reach = Reach()
+    assert push_room_m(own, stopped[0], 1, SHELF, reach) == 0.0
+    assert push_room_m(own, stopped[0], -1, SHELF, reach) > 0.2
+    assert not blade_fits(own, stopped[1], 1, SHELF, reach)
+    assert blade_fits(own, stopped[1], -1, SHELF, reach)
+    assert not way_out(own, stopped[2])
+    assert all(way_out(own, met) for met in stopped[:2])
+    assert not fits_at(own[None], stopped[3], SHELF)[0]
+
+
 def test_options_are_possible_where_everything_is_seen():
     boxes = [Box(0.15, 0.1, (0.06, 0.06, 0.1)), Box(0.4, 0.2, (0.1, 0.06, 0.12)),
              Box(0.65, 0.05, (0.06, 0.04, 0.08))]  # fmt: skip
