@@ -182,6 +182,8 @@ class Link:
                 raise WireError(f"got {message.kind!r}, which only a driver sends")
 
     def _take_welcome(self, welcome: Welcome) -> None:
+        if welcome.version != VERSION:
+            raise WireError(f"it speaks version {welcome.version}; expected {VERSION}")
         if self._welcome is not None and not welcome.resumed:
             self._fail(
                 "it was started anew or has served another driver; what it did is unknown",

@@ -15,6 +15,7 @@ from robots.interfaces import Arm, Floats, Grip
 
 VERSION = 1
 
+Row = Annotated[bytes, Field(min_length=8 * JOINTS, max_length=8 * JOINTS)]
 Mode = Literal["rest", "motion", "stop", "brake"]
 
 
@@ -23,7 +24,7 @@ class WireError(Exception):
 
 
 class _Message(BaseModel):
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
 
 class Hello(_Message):
@@ -132,9 +133,9 @@ class ControllerState(_Message):
     stamp_s: float
     mode: Mode
     held: bool
-    positions_rad: bytes
-    velocities_rad_s: bytes
-    accelerations_rad_s2: bytes
+    positions_rad: Row
+    velocities_rad_s: Row
+    accelerations_rad_s2: Row
     openings_m: tuple[float, float]
     gripping: tuple[bool, bool]
     holding: tuple[bool, bool]
@@ -186,13 +187,6 @@ def row(values: Floats) -> bytes:
     return values.astype("<f8").tobytes()
 
 
-def numbers(data: bytes) -> Floats:
-    """Read one number a joint, shape (14,).
-
-    Raises:
-        WireError: There are more or fewer.
-    """
-    values = np.frombuffer(data, "<f8") if len(data) % 8 == 0 else np.empty(0)
-    if values.shape != (JOINTS,):
-        raise WireError(f"got {len(data)} bytes; expected {JOINTS} numbers of 8 bytes")
-    return values.copy()
+def numbers(data: Row) -> Floats:
+    """Read one number a joint, shape (14,)."""
+    return np.frombuffer(data, "<f8").copy()

@@ -140,8 +140,10 @@ def test_a_message_with_a_field_too_many_is_none():
 
 def test_a_row_is_fourteen_numbers():
     assert np.array_equal(numbers(ROW), np.arange(14.0))
-    with pytest.raises(WireError, match="expected 14 numbers"):
-        numbers(ROW[:-1])
+    state = next(one for one in EVERY if one.kind == "state")
+    short = state.model_copy(update={"positions_rad": ROW[:-1]})
+    with pytest.raises(WireError, match="positions_rad: Data should have at least 112 bytes"):
+        messages.from_bytes(messages.to_bytes(short))
 
 
 def test_numbers_of_commands_begin_at_one():

@@ -94,21 +94,21 @@ def test_in_real_time_it_moves_by_the_clock_and_death_is_noticed(start):
 
 
 def test_a_controller_that_hangs_is_noticed_within_the_stated_time(start):
-    process, driver = start(silence_s=0.5)
+    process, driver = start(silence_s=1.0, overrun_s=9.0)
     driver.execute(SLOW)
     process.freeze()
     began_s = time.monotonic()
     text = trouble(driver, 20.0)
-    assert 0.3 < time.monotonic() - began_s < 5.0
-    assert "expected one within 0.5 s" in text
+    assert 0.5 < time.monotonic() - began_s < 5.0
+    assert "expected one within 1 s" in text
     with pytest.raises(DeviceError, match="got no answer"):
         driver.stop()
     process.thaw()
 
 
 def test_arms_whose_driver_has_gone_stop_by_themselves(start):
-    process, driver = start(silence_s=0.3, overrun_s=5.0)
-    driver.execute(SLOW)
+    process, driver = start(silence_s=0.8, overrun_s=9.0)
+    driver.execute(rest_to_rest(HOME_RAD, AWAY_RAD, LIMITS.slowed(0.1)))
     driver.close()
     another = None
     end_s = time.monotonic() + 20.0
