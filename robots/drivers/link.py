@@ -142,7 +142,7 @@ class Link:
                 self._wait(wire, end_s)
                 self._take_all(wire)
         except WireError as cause:
-            self._fail(str(cause), "try: start the controller, and give its host and port")
+            self._fail(str(cause), "try: see that the controller runs there and serves nobody else")
             self.close()
             raise DeviceError(self.trouble) from cause
         return self._welcome, self._state

@@ -224,5 +224,5 @@ def test_a_stranger_is_sent_away(start, first, match):
 
 
 def test_where_nobody_listens_the_message_says_so():
-    with pytest.raises(DeviceError, match=r"cannot connect to 127.0.0.1:1: .*try: start the"):
+    with pytest.raises(DeviceError, match=r"cannot connect to 127.0.0.1:1: .*try: see that"):
         SocketArms("127.0.0.1", 1, settings=LinkSettings(answer_s=1.0))
