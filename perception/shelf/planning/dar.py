@@ -4,7 +4,7 @@ It first takes the object whose mask overlaps the occupancy distribution most, a
 where it overlaps least. Where that object cannot be moved to less, the next one is taken.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -52,24 +52,34 @@ class DistributionAreaReduction:
             A move, or None when no object can be moved to where it covers less: the search is
             stuck.
         """
-        covers = [float(occupancy[sighting.mask].sum()) for sighting in seen]
-        for index in np.argsort(-np.array(covers), kind="stable"):
+
+        def moves_of(index: int) -> list[Option]:
+            return options(seen[index], seen, view, self._shelf, self._caster, self._reach, met)
+
+        return self.reduce(occupancy, seen, moves_of)
+
+    def reduce(
+        self,
+        occupancy: Floats,
+        seen: Sequence[Sighting],
+        moves_of: Callable[[int], Sequence[Option]],
+    ) -> Move | None:
+        """Choose among given moves; see `choose`.
+
+        Args:
+            occupancy: Where the target may be, shape (height, width), not negative.
+            seen: The objects in view.
+            moves_of: Moves of an object, by its index in `seen`; asked only where needed.
+        """
+        covers = np.array([float(occupancy[sighting.mask].sum()) for sighting in seen])
+        for index in np.argsort(-covers, kind="stable").tolist():
             if covers[index] > 0.0:
-                best = self._best(seen[index], covers[index], occupancy, view, seen, met)
+                best = self._best(moves_of(index), covers[index], occupancy)
                 if best is not None:
                     return best
         return None
 
-    def _best(
-        self,
-        sighting: Sighting,
-        cover: float,
-        occupancy: Floats,
-        view: ShelfView,
-        seen: Sequence[Sighting],
-        met: Floats,
-    ) -> Move | None:
-        found = options(sighting, seen, view, self._shelf, self._caster, self._reach, met)
+    def _best(self, found: Sequence[Option], cover: float, occupancy: Floats) -> Move | None:
         if not found:
             return None
         left = self.overlaps(found, occupancy)
