@@ -31,7 +31,7 @@ class FixedVision:
 @pytest.fixture
 def vision(monkeypatch):
     fixed = FixedVision()
-    monkeypatch.setattr(compose, "cable_vision", lambda: fixed)
+    monkeypatch.setattr(compose, "cable_vision", lambda kind: fixed)
     return fixed
 
 
