@@ -74,6 +74,8 @@ def test_json_is_one_line_an_image_with_the_keys_of_the_contract(vision, image):
             }
         ],
         "knotted_probability": 0.75,
+        "knot_types": {},
+        "telling": None,
         "seconds": 0.01,
     }
 
