@@ -23,7 +23,8 @@ from executive.inspector.fault_effects import effect_of, left_running
 from executive.inspector.past import PastRun
 
 BASELINE = "no_fault.mcap"
-_COMMAND = (sys.executable, "-c", "from executive.cli.main import main; main()", "run")
+_TIED = "from executive.engine.faults.tether import tie_to_stdin; tie_to_stdin()"
+_COMMAND = (sys.executable, "-c", f"{_TIED}; from executive.cli.main import main; main()", "run")
 
 
 @dataclass(frozen=True, slots=True)

@@ -60,13 +60,22 @@ class Processes:
             pool.shutdown(cancel_futures=True)
 
     def _one(self, command: Sequence[str]) -> Ended:
+        # A command that is tied to its standard input ends with this process.
+        tether, held = os.pipe()
+        try:
+            return self._tethered(command, tether)
+        finally:
+            os.close(tether)
+            os.close(held)
+
+    def _tethered(self, command: Sequence[str], tether: int) -> Ended:
         began_s = time.monotonic()
         with self._lock:
             if self._closed:
                 return Ended(-signal.SIGTERM, "", "", 0.0, overdue=False)
             process = subprocess.Popen(
                 command,
-                stdin=subprocess.DEVNULL,
+                stdin=tether,
                 stdout=subprocess.PIPE,
                 stderr=subprocess.PIPE,
                 text=True,

@@ -1,6 +1,8 @@
 """Commands in processes of their own: how each ended, and that none outlives the campaign."""
 
 import os
+import signal
+import subprocess
 import sys
 import time
 
@@ -65,3 +67,22 @@ def test_none_outlives_an_interrupt(tmp_path):
         time.sleep(0.05)
     assert not alive(pid)
     assert [ended.code for _, ended in processes.run([python("pass")])] == [0]
+
+
+def test_one_that_is_tied_does_not_outlive_a_kill(tmp_path):
+    pid = tmp_path / "pid"
+    tied = "from executive.engine.faults.tether import tie_to_stdin; tie_to_stdin()"
+    write = f"open({str(pid)!r}, 'w', buffering=1).write(f'{{os.getpid()}}\\n')"
+    command = python(f"{tied}; import os, time; {write}; time.sleep(60)")
+    runs = "from executive.engine.faults.processes import Processes\n"
+    runs += f"list(Processes(1, 60.0).run([{command!r}]))"
+    parent = subprocess.Popen(python(runs))
+    end_s = time.monotonic() + LONG_S / 2
+    while not (pid.exists() and pid.read_text()) and time.monotonic() < end_s:
+        time.sleep(0.05)
+    assert alive(pid)
+    parent.send_signal(signal.SIGKILL)
+    parent.wait()
+    while alive(pid) and time.monotonic() < end_s:
+        time.sleep(0.05)
+    assert not alive(pid)
