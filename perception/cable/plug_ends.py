@@ -15,7 +15,7 @@ from perception.cable.endpoints import EndpointConfig, find_endpoints
 from perception.cable.graph import Edge, SkeletonGraph, arms_of, usual_radius
 from perception.cable.mask import CableMask
 from perception.cable.plugs import Plug
-from perception.cable.polyline import arc_lengths, point_at
+from perception.cable.polyline import arc_lengths, pixels_of, point_at
 from perception.cable.types import Endpoint, Points
 
 # How sure it is that a connector is the end of a cable.
@@ -79,13 +79,11 @@ def _with_plug(
     """Return the graph with one more connector; as it was where no cable comes to it."""
     node = len(graph.nodes_px)
     gaps_px = cv2.distanceTransform((~plug.body).astype(np.uint8), cv2.DIST_L2, 3)
-    limits = np.array(gaps_px.shape[::-1]) - 1
     kept: list[Edge] = []
     stubs: set[int] = set()
     for number, edge in enumerate(graph.edges):
         # A smoothed edge may lie half a pixel outside the image.
-        columns, rows = np.rint(edge.points_px).astype(int).clip(0, limits).T
-        near = gaps_px[rows, columns] <= config.reach_widths * width_px
+        near = gaps_px[pixels_of(edge.points_px, gaps_px.shape)] <= config.reach_widths * width_px
         pieces = [edge] if not near.any() or number in graph.plugs else _outside(edge, near, node)
         for piece in pieces:
             if number in graph.plugs:

@@ -1,6 +1,7 @@
 """Lengths along a polyline and points on it; light enough for skills to import."""
 
 import numpy as np
+from numpy.typing import NDArray
 
 from perception.cable.types import Points
 
@@ -24,3 +25,17 @@ def resample(points: Points, spacing_px: float = SPACING_PX) -> Points:
     arcs = arc_lengths(points)
     count = max(round(arcs[-1] / spacing_px), 1)
     return point_at(points, arcs, np.linspace(0.0, arcs[-1], count + 1))
+
+
+def pixels_of(
+    points_px: Points, shape: tuple[int, ...]
+) -> tuple[NDArray[np.int_], NDArray[np.int_]]:
+    """Return rows and columns of the pixels that points lie in, shape (N,) each.
+
+    Args:
+        points_px: Points, shape (N, 2); those outside count as the nearest pixel.
+        shape: Height and width of the image.
+    """
+    limits = np.array([shape[1], shape[0]]) - 1
+    columns, rows = np.rint(points_px).astype(int).clip(0, limits).T
+    return rows, columns

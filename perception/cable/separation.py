@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from perception.cable.classifiers.edges import EdgeClassifier
 from perception.cable.mask import CableMask
 from perception.cable.observation import observe
-from perception.cable.polyline import arc_lengths, point_at
+from perception.cable.polyline import arc_lengths, pixels_of, point_at
 from perception.cable.tracers.skeleton import SkeletonTracer
 from perception.cable.types import Crossing, Points, Trace
 from perception.camera import GreyImage
@@ -56,9 +56,7 @@ def paint(mask: CableMask, traces: Sequence[Trace], crossings: Sequence[Crossing
 
 def _stroke(labels: Labels, mask: CableMask, points_px: Points, number: int) -> None:
     """Paint a line as wide as the mask is along it, in place."""
-    limits = np.array(labels.shape[::-1]) - 1
-    columns, rows = np.rint(points_px).astype(int).clip(0, limits).T
-    radii = mask.radius_px[rows, columns]
+    radii = mask.radius_px[pixels_of(points_px, labels.shape)]
     width_px = 2.0 * float(np.median(radii[radii > 0.0])) if (radii > 0.0).any() else mask.width_px
     fixed = np.round(points_px * (1 << _SHIFT)).astype(np.int32)[:, None]
     thickness = max(round(BROADER * width_px), 1)

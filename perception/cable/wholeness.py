@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from perception.cable.coverage import explained_share
 from perception.cable.observation import Observation
+from perception.cable.polyline import pixels_of
 from perception.cable.types import Points
 
 # A trace that explains less than the first share is not the whole cable, from the second on it
@@ -63,6 +64,4 @@ def _no_hook(
 def _pieces_along(cable: NDArray[np.bool_], path_px: Points) -> NDArray[np.bool_]:
     """Return the connected pieces of the mask that a path runs over."""
     labels = np.asarray(cv2.connectedComponents(cable.astype(np.uint8))[1])
-    limits = np.array([cable.shape[1], cable.shape[0]]) - 1
-    columns, rows = np.rint(path_px).astype(int).clip(0, limits).T
-    return np.isin(labels, np.unique(labels[rows, columns])) & cable
+    return np.isin(labels, np.unique(labels[pixels_of(path_px, cable.shape)])) & cable

@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 
 from perception.cable.mask import CableMask, find_mask
-from perception.cable.polyline import arc_lengths, point_at
+from perception.cable.polyline import arc_lengths, pixels_of, point_at
 from perception.cable.tracers.centre_line import tangents
 from perception.cable.types import Points
 from perception.camera import GreyImage
@@ -33,12 +33,11 @@ def mask_under(image: GreyImage, on_cable_px: Points) -> CableMask | None:
         on_cable_px: Points on the cable, shape (N, 2); they tell bright cables on dark tables
             from dark ones on bright tables.
     """
-    limits = np.array([image.shape[1], image.shape[0]]) - 1
-    columns, rows = np.round(on_cable_px).astype(int).clip(0, limits).T
+    places = pixels_of(on_cable_px, image.shape)
     masks = [mask for mask in (find_mask(image), find_mask(255 - image)) if mask is not None]
     return max(
         masks,
-        key=lambda mask: (float(mask.cable[rows, columns].mean()), mask.contrast),
+        key=lambda mask: (float(mask.cable[places].mean()), mask.contrast),
         default=None,
     )
 

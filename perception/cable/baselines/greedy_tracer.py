@@ -10,15 +10,15 @@ from pathlib import Path as FilePath
 
 import numpy as np
 
-from perception.cable.polyline import arc_lengths, point_at
 from perception.cable.tracers.modes import find_modes
 from perception.cable.tracers.paths import Path
+from perception.cable.tracers.starts import stepwise
 from perception.cable.tracers.steps import StepModel
 from perception.cable.types import Endpoint, Points, Trace, TraceEnd
 from perception.cable.width import cable_width
 from perception.camera import GreyImage
 from perception.models.frames import ScaledImage, scale_image
-from perception.models.tracer_crop import STEP, WIDTH
+from perception.models.tracer_crop import WIDTH
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,7 +68,7 @@ class GreedyTracer:
         scaled = scale_image(image, width_px, WIDTH, self._model.zoom)
         begin = scaled.into(start_px)
         ends = scaled.into(np.array([end.position_px for end in endpoints]).reshape(-1, 2))
-        points, end, log_probability = self._followed(scaled, _stepwise(begin), ends)
+        points, end, log_probability = self._followed(scaled, stepwise(begin), ends)
         return Trace(
             np.vstack([start_px[:1], scaled.back(points)]), end, float(np.exp(log_probability))
         )
@@ -116,12 +116,3 @@ class GreedyTracer:
             for line in (last, last[:, ::-1])
         )
         return bool(same < self._config.same * WIDTH or back < self._config.back * WIDTH)
-
-
-def _stepwise(points: Points) -> Points:
-    """Return points one step apart that end at the last one; two at least."""
-    along = arc_lengths(points)
-    arcs = along[-1] - STEP * np.arange(int(along[-1] / STEP) + 1)
-    if len(arcs) < 2:
-        arcs = along[[-1, 0]]
-    return point_at(points, along, arcs[::-1])

@@ -9,12 +9,13 @@ diagrams are equal when their codes are, wherever their crossings lie.
 from collections import deque
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import partial
 
 import numpy as np
 
 from perception.cable.polyline import arc_lengths
 from perception.cable.topology.curve import Strand
-from perception.cable.topology.diagram import Diagram, compact
+from perception.cable.topology.diagram import Diagram, compact, partners_of, walked_faces
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,28 +67,8 @@ class OpenDiagram:
 
         Edge e leads to visit e; the last one, 2n, leads to the end of the curve.
         """
-        count, other = len(self.visits) + 1, self._partners()
-        sides = [[-1] * count, [-1] * count]  # of edges walked backwards, forwards
-        faces = 0
-        for start in range(2 * count):
-            edge, forward = start >> 1, bool(start & 1)
-            if sides[forward][edge] >= 0:
-                continue
-            while sides[forward][edge] < 0:
-                sides[forward][edge] = faces
-                edge, forward = self._turn_left(other, edge, forward)
-            faces += 1
-        return sides[1], sides[0], faces
-
-    def _partners(self) -> list[int]:
-        first: dict[int, int] = {}
-        other = [0] * len(self.visits)
-        for place, crossing in enumerate(self.visits):
-            if crossing in first:
-                other[place], other[first[crossing]] = first[crossing], place
-            else:
-                first[crossing] = place
-        return other
+        other = partners_of(self.visits)
+        return walked_faces(len(self.visits) + 1, partial(self._turn_left, other))
 
     def _turn_left(self, other: list[int], edge: int, forward: bool) -> tuple[int, bool]:
         """Return the next edge of the face on the left, and the way it is walked."""

@@ -11,6 +11,7 @@ from perception.cable.mask import CableMask, radii
 from perception.cable.observation import Observation, observation_of
 from perception.cable.plug_ends import find_ends
 from perception.cable.plugs import Plug, plug_of
+from perception.cable.polyline import pixels_of
 from perception.cable.sight.seen import Seen
 from perception.cable.sight.sight import Sight
 from perception.cable.types import Endpoint, Points
@@ -72,9 +73,7 @@ class SightEye:
 
 
 def _at(distances_px: NDArray[np.float32], point_px: Points) -> float:
-    rows, columns = distances_px.shape
-    column, row = np.rint(point_px).astype(int)
-    return float(distances_px[min(max(row, 0), rows - 1), min(max(column, 0), columns - 1)])
+    return float(distances_px[pixels_of(point_px[None], distances_px.shape)][0])
 
 
 def mask_of(seen: Seen, image: GreyImage) -> CableMask | None:

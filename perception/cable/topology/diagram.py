@@ -5,7 +5,12 @@ the strand is on top. With the sign of every crossing this fixes the diagram on 
 A crossing is positive when the upper strand turns counter-clockwise (y up) onto the lower.
 """
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
+
+# The next edge of the face on the left of an edge that is walked forwards or backwards.
+TurnLeft = Callable[[int, bool], tuple[int, bool]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,32 +33,15 @@ class Diagram:
 
     def partners(self) -> list[int]:
         """Return for each visit the place of the other visit of the same crossing."""
-        first: dict[int, int] = {}
-        other = [0] * len(self.visits)
-        for place, crossing in enumerate(self.visits):
-            if crossing in first:
-                other[place], other[first[crossing]] = first[crossing], place
-            else:
-                first[crossing] = place
-        return other
+        return partners_of(self.visits)
 
     def faces(self) -> tuple[list[int], list[int], int]:
         """Return the face to the left and to the right of each edge, and how many there are.
 
         Edge e runs from visit e to visit e + 1 (cyclic).
         """
-        count, other = len(self.visits), self.partners()
-        sides = [[-1] * count, [-1] * count]  # of edges walked backwards, forwards
-        faces = 0
-        for start in range(2 * count):
-            edge, forward = start >> 1, bool(start & 1)
-            if sides[forward][edge] >= 0:
-                continue
-            while sides[forward][edge] < 0:
-                sides[forward][edge] = faces
-                edge, forward = self._turn_left(other, edge, forward)
-            faces += 1
-        return sides[1], sides[0], faces
+        other = self.partners()
+        return walked_faces(len(self.visits), partial(self._turn_left, other))
 
     def _turn_left(self, other: list[int], edge: int, forward: bool) -> tuple[int, bool]:
         """Return the next edge of the face on the left, and the way it is walked."""
@@ -104,3 +92,35 @@ def compact(visits: list[int], over: list[bool], sign_of: dict[int, int]) -> Dia
         numbers.setdefault(crossing, len(numbers))
     signs = tuple(sign_of[crossing] for crossing in numbers)
     return Diagram(tuple(numbers[crossing] for crossing in visits), tuple(over), signs)
+
+
+def partners_of(visits: Sequence[int]) -> list[int]:
+    """Return for each visit the place of the other visit of the same crossing."""
+    first: dict[int, int] = {}
+    other = [0] * len(visits)
+    for place, crossing in enumerate(visits):
+        if crossing in first:
+            other[place], other[first[crossing]] = first[crossing], place
+        else:
+            first[crossing] = place
+    return other
+
+
+def walked_faces(edges: int, turn_left: TurnLeft) -> tuple[list[int], list[int], int]:
+    """Return the face to the left and to the right of each edge, and how many there are.
+
+    Args:
+        edges: How many edges there are.
+        turn_left: Tells where the walk round a face goes on.
+    """
+    sides = [[-1] * edges, [-1] * edges]  # of edges walked backwards, forwards
+    faces = 0
+    for start in range(2 * edges):
+        edge, forward = start >> 1, bool(start & 1)
+        if sides[forward][edge] >= 0:
+            continue
+        while sides[forward][edge] < 0:
+            sides[forward][edge] = faces
+            edge, forward = turn_left(edge, forward)
+        faces += 1
+    return sides[1], sides[0], faces

@@ -14,14 +14,12 @@ from perception.cable.tracers.paths import Ends
 from perception.cable.tracers.search import Search, SearchConfig, run_searches
 from perception.cable.tracers.starts import first_paths, from_start
 from perception.cable.tracers.steps import StepModel
+from perception.cable.tracers.survey import OWN_END_WIDTHS
 from perception.cable.types import Endpoint, Points, Trace, TraceEnd
 from perception.cable.width import cable_width
 from perception.camera import GreyImage
 from perception.models.frames import scale_image
 from perception.models.tracer_crop import WIDTH
-
-# An end of a cable is not where the same cable's trace finishes within so many widths.
-OWN_END_WIDTHS = 3.0
 
 
 class LearnedTracer:

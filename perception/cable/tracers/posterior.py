@@ -6,7 +6,7 @@ scenes of known truth, `perception.training.trace_posterior`, so that beliefs co
 often as they say.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path as FilePath
@@ -17,7 +17,8 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict
 
 from executive.core.errors import InputError
-from perception.cable.observation import Observation
+from perception.cable.observation import Observe
+from perception.cable.polyline import pixels_of
 from perception.cable.tracers.evidence import FEATURES, NONE_FEATURES, doubts, evidence
 from perception.cable.tracers.hypotheses import Hypothesis, hypotheses
 from perception.cable.tracers.search import SearchConfig
@@ -29,7 +30,6 @@ from perception.camera import GreyImage
 from perception.models.frames import Floats
 
 FILE = "posterior.json"
-Observe = Callable[[GreyImage], Observation | None]
 # A start with no more points than this at a known end tells nothing more than that end.
 MOST_AT_END = 2
 # Widths that are tried, too, as shares of the seen one, where a trace is lost.
@@ -178,10 +178,8 @@ def _is_doubtful(posterior: TracePosterior) -> bool:
 
 def _holds(cable: NDArray[np.bool_], points_px: Points) -> bool:
     """Say whether at least half of some points lie on a mask or beside it."""
-    limits = np.array(cable.shape[::-1]) - 1
-    columns, rows = np.rint(points_px).astype(int).clip(0, limits).T
     near = cv2.dilate(cable.astype(np.uint8), np.ones((3, 3), np.uint8))
-    return float(near[rows, columns].mean()) >= 0.5
+    return float(near[pixels_of(points_px, cable.shape)].mean()) >= 0.5
 
 
 def _end_at(start_px: Points, endpoints: Sequence[Endpoint], width_px: float) -> int | None:

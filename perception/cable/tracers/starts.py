@@ -25,7 +25,7 @@ def first_paths(start_px: Points, endpoints: Sequence[Endpoint], scaled: ScaledI
     """
     points = scaled.into(start_px)
     if len(points) > 1:
-        return [_fresh(_even(points))]
+        return [_fresh(stepwise(points))]
     known = [
         end.direction
         for end in endpoints
@@ -54,8 +54,8 @@ def _fresh(points: Points) -> Path:
     return Path(points, np.zeros(len(points)))
 
 
-def _even(points: Points) -> Points:
-    """Return points one step apart that end at the last one."""
+def stepwise(points: Points) -> Points:
+    """Return points one step apart that end at the last one; two at least."""
     along = arc_lengths(points)
     arcs = along[-1] - STEP * np.arange(int(along[-1] / STEP) + 1)
     if len(arcs) < 2:

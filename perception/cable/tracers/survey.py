@@ -25,6 +25,7 @@ Bools = NDArray[np.bool_]
 
 # The mask is kept so small that a cable is this wide [px]; it only tells lengths.
 MASK_WIDTH = 3.0
+# An end of a cable is not where the same cable's trace finishes within so many widths.
 OWN_END_WIDTHS = 3.0
 # A start points into the cable from this far along it.
 LEAD = 2.0 * WIDTH
