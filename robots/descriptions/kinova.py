@@ -4,8 +4,9 @@ Kinematic facts are those of Kinova's public description (BSD-3-Clause); shapes 
 boxes of our own that enclose the links. Joints that the maker calls continuous are given two
 turns either way, so that a configuration has one number a joint.
 
-The bluction tool is a blade to push with and a suction cup to lift with (Huang et al. 2022). No
-model of it is public: this one is drawn to that purpose, as long as a shelf is deep.
+The bluction tool is a blade to push with and suction to lift with (Huang et al. 2022). No model of
+it is public: this one is drawn to that purpose, as long as a shelf is deep. Its cups are small and
+stand above each other on the blade's edge, so that the tool goes in where its blade does.
 """
 
 from dataclasses import dataclass
@@ -17,8 +18,10 @@ from robots.descriptions.model import Box, Capsule, Joint, Limits, Link, RobotDe
 TWO_TURNS_DEG = 360.0
 # From the last joint but five, the shoulder, to the end effector, over random configurations.
 REACH_M = 0.985
-BLADE_LENGTH_M, BLADE_HEIGHT_M, BLADE_THICKNESS_M = 0.28, 0.07, 0.006
-CUP_RADIUS_M, CUP_AHEAD_M = 0.014, 0.012
+BLADE_LENGTH_M, BLADE_HEIGHT_M, BLADE_THICKNESS_M = 0.35, 0.07, 0.006
+CUP_RADIUS_M, CUP_AHEAD_M = 0.005, 0.012
+# Where the cups are along y of the suction frame [m]; y points down while the blade is upright.
+CUPS_M = (-0.024, -0.008, 0.008, 0.024)
 _CAPSULE_ALLOWANCE_M = 0.001  # the fits let mesh vertices stick out by up to 0.57 mm
 
 SUCTION_FRAME, BLADE_FRAME, CAMERA_FRAME = "suction", "blade", "tool_camera"
@@ -136,14 +139,14 @@ def _tool_links() -> list[Link]:
     plate = Box(
         (-half_thickness, -half_height, 0.03), (half_thickness, half_height, BLADE_LENGTH_M)
     )
-    # The capsule ends in half a ball; the cup's lip is where that ball ends.
+    # A capsule ends in half a ball; the cup's lip is where that ball ends.
     lip_m = BLADE_LENGTH_M + CUP_AHEAD_M - CUP_RADIUS_M
-    cup = Capsule((0.0, 0.0, lip_m - 0.04), (0.0, 0.0, lip_m), CUP_RADIUS_M)
+    cups = tuple(Capsule((0.0, y, lip_m - 0.03), (0.0, y, lip_m), CUP_RADIUS_M) for y in CUPS_M)
     camera = Box((-0.0125, -0.045, -0.0125), (0.0125, 0.045, 0.0125))
     return [
         Link("end_effector", 0.001),
         Link("bluction", 0.20, (mount, plate), _ORANGE),
-        Link("cup", 0.02, (cup,), _RUBBER),
+        Link("cup", 0.02, cups, _RUBBER),
         Link("camera_body", 0.07, (camera,), _GREY),
         *(Link(frame, 0.001) for frame in (SUCTION_FRAME, BLADE_FRAME, CAMERA_FRAME)),
     ]
