@@ -5,11 +5,8 @@ The arms touch nothing but the table here; the cable is pushed by capsules that 
 """
 
 import math
-import os
-import sys
 from collections.abc import Mapping, Sequence
 from types import MappingProxyType
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +15,7 @@ from robots.descriptions import urdf_path
 from robots.descriptions.yumi import arm_joint_names, finger_joint_names
 from robots.interfaces import ARMS, Arm
 from robots.placement import YUMI_AT_TABLE, table_top
+from simulation.bullet import import_pybullet
 
 Floats = NDArray[np.float64]
 
@@ -25,20 +23,6 @@ Floats = NDArray[np.float64]
 _JOINT_EFFORT, _FINGER_EFFORT_N = 300.0, 40.0
 _ROBOT_GROUP, _TABLE_GROUP = 2, 1
 _ROOT = "body"
-
-
-def _pybullet() -> Any:
-    """Import PyBullet without the greeting that it writes to standard error."""
-    sys.stderr.flush()
-    stderr, nowhere = os.dup(2), os.open(os.devnull, os.O_WRONLY)
-    os.dup2(nowhere, 2)
-    try:
-        import pybullet
-    finally:
-        os.dup2(stderr, 2)
-        os.close(stderr)
-        os.close(nowhere)
-    return pybullet
 
 
 class YumiBody:
@@ -58,7 +42,7 @@ class YumiBody:
             openings_m: Of the grippers.
             step_s: Length of a step.
         """
-        self._bullet = _pybullet()
+        self._bullet = import_pybullet()
         self._server = self._bullet.connect(self._bullet.DIRECT)
         self._bullet.setTimeStep(step_s, physicsClientId=self._server)
         self._add_table()
