@@ -1,0 +1,97 @@
+"""Where the arm and the shelf stand; the world is the shelf's frame (`robots.shelf_tool`).
+
+The shelf is open at its front, y = 0, and stands on a cabinet. Beside it, to its left and level
+with its floor, a counter takes what is handed over.
+"""
+
+from dataclasses import dataclass
+from math import pi
+
+import numpy as np
+
+from robots.interfaces import Floats
+from robots.placement import Placement, PlanningScene, StaticBox
+
+BOARD_M = 0.018
+# Shoulder a little below the shelf's floor and far enough back that the arm is not folded up when
+# it looks from before the shelf, nor stretched at its back corners.
+BASE_BEFORE_M, BASE_BELOW_M = 0.62, 0.45
+_CABINET_HEIGHT_M = 0.8
+_COUNTER_WIDTH_M, _COUNTER_GAP_M = 0.36, 0.03
+
+# A level tool that looks into the shelf: x along the shelf, y down, z into it.
+LEVEL_TOOL: Floats = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
+
+
+@dataclass(frozen=True, slots=True)
+class ShelfSize:
+    """The inside of the shelf.
+
+    Attributes:
+        width_m: Along x.
+        depth_m: Along y.
+        height_m: Along z.
+    """
+
+    width_m: float = 0.8
+    depth_m: float = 0.35
+    height_m: float = 0.57
+
+
+def arm_placement(shelf: ShelfSize) -> Placement:
+    """Return where the arm's root stands: before the middle of the shelf, facing it."""
+    return Placement((0.5 * shelf.width_m, -BASE_BEFORE_M, -BASE_BELOW_M), 0.5 * pi)
+
+
+def boards(shelf: ShelfSize) -> tuple[StaticBox, ...]:
+    """Return the shelf's boards and walls, the cabinet under it and the counter beside it."""
+    width, depth, height, board = shelf.width_m, shelf.depth_m, shelf.height_m, BOARD_M
+    middle_x, middle_y, middle_z = 0.5 * width, 0.5 * depth, 0.5 * height
+    outer = width + 2.0 * board
+    return (
+        StaticBox("shelf_floor", (middle_x, middle_y, -0.5 * board), (outer, depth, board)),
+        StaticBox("shelf_top", (middle_x, middle_y, height + 0.5 * board), (outer, depth, board)),
+        StaticBox("left_wall", (-0.5 * board, middle_y, middle_z), (board, depth, height)),
+        StaticBox("right_wall", (width + 0.5 * board, middle_y, middle_z), (board, depth, height)),
+        StaticBox(
+            "shelf_back",
+            (middle_x, depth + 0.5 * board, middle_z),
+            (outer, board, height + 2.0 * board),
+        ),
+        StaticBox(
+            "cabinet",
+            (middle_x, middle_y, -board - 0.5 * _CABINET_HEIGHT_M),
+            (outer, depth, _CABINET_HEIGHT_M),
+        ),
+        StaticBox("counter", counter_middle(shelf), (_COUNTER_WIDTH_M, depth, board)),
+    )
+
+
+def counter_middle(shelf: ShelfSize) -> tuple[float, float, float]:
+    """Return the centre of the counter's slab; its upper face is level with the shelf's floor."""
+    x_m = -BOARD_M - _COUNTER_GAP_M - 0.5 * _COUNTER_WIDTH_M
+    return (x_m, 0.5 * shelf.depth_m, -0.5 * BOARD_M)
+
+
+def open_scene(shelf: ShelfSize) -> PlanningScene:
+    """Return the scene in which tools may go into the shelf."""
+    return PlanningScene(arm_placement(shelf), boards(shelf))
+
+
+def closed_scene(shelf: ShelfSize) -> PlanningScene:
+    """Return the scene for free motions: whatever may stand in the shelf, they stay out."""
+    size = (shelf.width_m, shelf.depth_m, shelf.height_m)
+    inside = StaticBox("shelf_contents", (0.5 * size[0], 0.5 * size[1], 0.5 * size[2]), size)
+    return PlanningScene(arm_placement(shelf), (*boards(shelf), inside))
+
+
+def viewpoints(shelf: ShelfSize, distance_m: float, height_m: float) -> dict[str, Floats]:
+    """Return T_shelf_camera of each named viewpoint, shape (4, 4): level, looking straight in."""
+    places = {"left": 0.25, "centre": 0.5, "right": 0.75}
+    poses = {}
+    for name, share in places.items():
+        T_shelf_camera = np.eye(4)
+        T_shelf_camera[:3, :3] = LEVEL_TOOL
+        T_shelf_camera[:3, 3] = (share * shelf.width_m, -distance_m, height_m)
+        poses[name] = T_shelf_camera
+    return poses
