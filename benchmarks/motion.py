@@ -21,6 +21,7 @@ from robots.limits import JointLimits
 from robots.motion.ik import random_bank, solve_pose
 from robots.motion.model import ArmKinematics, RobotModel, yumi_model
 from robots.motion.planner import PlannerSettings
+from robots.motion.solver import BANK_SIZE
 from robots.motion.timing import cut_corners, stop_at_waypoints
 from robots.placement import YUMI_AT_TABLE, table_scene
 from simulation.table_world import TableWorld
@@ -95,10 +96,10 @@ def _inverse(robot: RobotModel, rng: np.random.Generator, count: int) -> list[Ro
     solved, times_ms = 0, []
     for number in range(count):
         arm = robot.kinematics[ARMS[number % 2]]
-        bank = random_bank(arm, np.random.default_rng(0), 200)
+        bank = random_bank(arm, np.random.default_rng(0), BANK_SIZE)
         target = arm.tcp_pose(random_bank(arm, rng, 1).positions_rad[0])
         began = time.perf_counter()
-        solved += _solves(arm, target, bank.near(target.translation, 100))
+        solved += _solves(arm, target, bank.near(target, 100))
         times_ms.append(1e3 * (time.perf_counter() - began))
     return [
         share("ik_solved", solved, count, ">= 0.995"),

@@ -7,7 +7,7 @@ opening direction of the fingers.
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Literal, Protocol, runtime_checkable
+from typing import Literal, Protocol, TypeVar, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +16,8 @@ Floats = NDArray[np.float64]
 Arm = Literal["left", "right"]
 ARMS: tuple[Arm, Arm] = ("left", "right")
 Grip = Literal["open", "cage", "pinch"]
+# Names of the arms of any robot; those of the YuMi are `Arm`.
+ArmName = TypeVar("ArmName", bound=str)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -38,6 +40,30 @@ class TcpGoal:
     onward_m: tuple[Floats, ...] = ()
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class PoseGoal:
+    """Where a tool should be, in any orientation, e.g. level before a shelf.
+
+    Attributes:
+        position_m: In the world frame [m], shape (3,).
+        quat_xyzw: Orientation of the tool in the world, shape (4,).
+        turns_rad: Turns about the tool's own z axis that serve as well; 0 stands for the
+            orientation itself.
+        max_tilt_rad: How far the tool's z axis may lean from there where that is out of
+            reach [rad].
+        onward_m: Straight tool motions that must be possible from there, as in `TcpGoal`.
+    """
+
+    position_m: Floats
+    quat_xyzw: Floats
+    turns_rad: tuple[float, ...] = (0.0,)
+    max_tilt_rad: float = 0.0
+    onward_m: tuple[Floats, ...] = ()
+
+
+Goal = TcpGoal | PoseGoal
+
+
 @dataclass(frozen=True, slots=True)
 class MotionFailure:
     """Why a motion cannot be planned.
@@ -57,7 +83,7 @@ class MotionFailure:
 
 @runtime_checkable
 class Trajectory(Protocol):
-    """A timed, checked joint motion of all arms; exact at any rate."""
+    """A timed, checked joint motion of all arms of a robot; exact at any rate."""
 
     @property
     def duration_s(self) -> float:
@@ -65,23 +91,23 @@ class Trajectory(Protocol):
         ...
 
     def at(self, time_s: float) -> tuple[Floats, Floats, Floats]:
-        """Return position, velocity and acceleration [rad, rad/s, rad/s2], shape (14,) each.
+        """Return position, velocity and acceleration [rad, rad/s, rad/s2], shape (n,) each.
 
-        The left arm's seven joints come first, then the right arm's, in chain order.
-        Times outside [0, duration] give the first or the last state.
+        Joints are in the order of the robot's configurations, of two arms the left one's
+        first, each in chain order. Times outside [0, duration] give the first or the last state.
         """
         ...
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ArmsState:
-    """State of both arms and grippers.
+    """State of all arms of a robot, and of their grippers.
 
     Attributes:
-        positions_rad: Joint positions, shape (14,), left arm first.
-        velocities_rad_s: Joint velocities, shape (14,).
-        accelerations_rad_s2: Commanded joint accelerations, shape (14,).
-        openings_m: Distance between the fingers of each gripper [m].
+        positions_rad: Joint positions, shape (n,), of two arms the left one's first.
+        velocities_rad_s: Joint velocities, shape (n,).
+        accelerations_rad_s2: Commanded joint accelerations, shape (n,).
+        openings_m: Distance between the fingers of each gripper [m]; empty without grippers.
         moving: Whether a trajectory or a stop is being executed; also while it is held.
         stamp_s: On the cell's clock [s].
     """
@@ -95,8 +121,8 @@ class ArmsState:
 
 
 @runtime_checkable
-class ArmsDriver(Protocol):
-    """Talks to the controllers of two arms; never blocks."""
+class JointsDriver(Protocol):
+    """Talks to the controllers of all joints of a robot; never blocks."""
 
     def state(self) -> ArmsState:
         """Return the latest state."""
@@ -108,18 +134,6 @@ class ArmsDriver(Protocol):
         Raises:
             DeviceError: It begins elsewhere, or another one is running.
         """
-        ...
-
-    def grip(self, arm: Arm, grip: Grip) -> None:
-        """Start opening or closing a gripper: `open` 50 mm, `cage` a ring, `pinch` shut."""
-        ...
-
-    def gripping(self, arm: Arm) -> bool:
-        """Return whether the fingers are still on their way."""
-        ...
-
-    def holds(self, arm: Arm) -> bool:
-        """Return whether something is between the closed fingers (they are not shut)."""
         ...
 
     def hold(self) -> None:
@@ -138,7 +152,7 @@ class ArmsDriver(Protocol):
         ...
 
     def stop(self) -> None:
-        """Bring all joints to rest within their jerk limits; grippers keep what they hold.
+        """Bring all joints to rest within their jerk limits; tools keep what they hold.
 
         What was executed or held is given up.
         """
@@ -146,6 +160,23 @@ class ArmsDriver(Protocol):
 
     def emergency_stop(self) -> None:
         """Stop as fast as the brakes allow, and take no more commands; from any thread."""
+        ...
+
+
+@runtime_checkable
+class ArmsDriver(JointsDriver, Protocol):
+    """Talks to the controllers of two arms with grippers; never blocks."""
+
+    def grip(self, arm: Arm, grip: Grip) -> None:
+        """Start opening or closing a gripper: `open` 50 mm, `cage` a ring, `pinch` shut."""
+        ...
+
+    def gripping(self, arm: Arm) -> bool:
+        """Return whether the fingers are still on their way."""
+        ...
+
+    def holds(self, arm: Arm) -> bool:
+        """Return whether something is between the closed fingers (they are not shut)."""
         ...
 
 

@@ -11,6 +11,8 @@ import numpy as np
 from robots.descriptions.model import Vec3
 from robots.interfaces import Floats
 
+Quat = tuple[float, float, float, float]
+UPRIGHT: Quat = (0.0, 0.0, 0.0, 1.0)
 TABLE_SIZE_M = (1.0, 0.75)
 # Thin enough that the robot's feet (their top is 40 mm below the table's surface) fit under it.
 TABLE_THICKNESS_M = 0.03
@@ -53,25 +55,53 @@ class Placement:
 
 @dataclass(frozen=True, slots=True)
 class StaticBox:
-    """An axis-aligned box that never moves, in the world frame.
+    """A box that never moves while the robot does, in the world frame.
 
     Attributes:
         name: Shown in reports of collisions.
         centre_m: Middle of the box [m].
         size_m: Whole edge lengths [m].
+        quat_xyzw: Orientation; edges lie along the world's axes by default.
+        touched_by: Links that may touch it, as a blade does the box that it pushes.
     """
 
     name: str
     centre_m: Vec3
     size_m: Vec3
+    quat_xyzw: Quat = UPRIGHT
+    touched_by: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class AttachedBox:
+    """A box that an arm carries.
+
+    Attributes:
+        name: Shown in reports of collisions.
+        arm: Which arm carries it.
+        centre_m: Middle of the box in the tool's frame [m].
+        size_m: Whole edge lengths [m].
+        quat_xyzw: Orientation in the tool's frame.
+        touched_by: Links, boxes of the scene besides, that it may touch: the cup that holds it.
+        margin_m: How far it keeps from all else [m].
+    """
+
+    name: str
+    arm: str
+    centre_m: Vec3
+    size_m: Vec3
+    quat_xyzw: Quat = UPRIGHT
+    touched_by: tuple[str, ...] = ()
+    margin_m: float = 0.002
 
 
 @dataclass(frozen=True, slots=True)
 class PlanningScene:
-    """The robot's placement and the static boxes that it must not touch."""
+    """The robot's placement, the boxes that it must not touch, and those that it carries."""
 
     placement: Placement
     boxes: tuple[StaticBox, ...] = ()
+    attached: tuple[AttachedBox, ...] = ()
 
 
 YUMI_AT_TABLE = Placement(position_m=(0.0, -0.425, -0.10), yaw_rad=pi / 2)

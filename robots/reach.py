@@ -7,7 +7,7 @@ from math import pi
 import numpy as np
 from numpy.typing import NDArray
 
-from robots.interfaces import Arm, Floats, TcpGoal
+from robots.interfaces import Floats, TcpGoal
 from robots.motion.model import yumi_model
 from robots.motion.solver import GoalSolver
 from robots.placement import HOME_RAD, PlanningScene
@@ -25,9 +25,9 @@ class ReachMap:
 
     x_m: Floats
     y_m: Floats
-    share: Mapping[Arm, Floats]
+    share: Mapping[str, Floats]
 
-    def reached(self, least_share: float = 1.0) -> dict[Arm, NDArray[np.bool_]]:
+    def reached(self, least_share: float = 1.0) -> dict[str, NDArray[np.bool_]]:
         """Return for each arm where it grasps at that share of the yaws or more."""
         return {arm: share >= least_share - 1e-9 for arm, share in self.share.items()}
 
@@ -68,7 +68,7 @@ def reach_map(
     robot = yumi_model(scene.placement)
     solver = GoalSolver(robot, scene, HOME_RAD, seed)
     solver.set_openings(dict.fromkeys(robot.arms, 0.05))
-    share: dict[Arm, Floats] = {}
+    share: dict[str, Floats] = {}
     for arm in robot.arms:
         share[arm] = np.zeros((len(y_m), len(x_m)))
         for row, column in np.ndindex(share[arm].shape):

@@ -12,21 +12,11 @@ import coal
 import numpy as np
 import pinocchio as pin
 
-from robots.interfaces import Arm, Floats
+from executive.core.errors import InputError
+from executive.core.registry import closest
+from robots.interfaces import ArmName, Floats
 from robots.motion.model import RobotModel
-from robots.placement import PlanningScene, StaticBox
-
-# Bodies that overlap by construction of their enclosing shapes, besides parent and child. The
-# body's head box (its fifth shape) encloses what the shoulders turn in.
-YUMI_OVERLAPS: tuple[tuple[str, str], ...] = tuple(
-    pair
-    for arm in ("left", "right")
-    for pair in (
-        ("body_4", f"{arm}_link_2_0"),
-        (f"{arm}_link_5_0", f"{arm}_link_7_0"),
-        (f"{arm}_link_5_0", f"{arm}_gripper_base_0"),
-    )
-)
+from robots.placement import AttachedBox, PlanningScene, StaticBox
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,7 +25,7 @@ class Margins:
 
     Attributes:
         world_m: Links from static boxes.
-        finger_world_m: Fingers from static boxes; they have to reach down to the table.
+        finger_world_m: Fingers and other tools from static boxes; they have to reach things.
         arms_m: One arm from the other.
         own_m: Links of one arm, and arm and body; both are known exactly.
     """
@@ -59,32 +49,38 @@ class CollisionModel:
         robot: RobotModel,
         scene: PlanningScene,
         *,
-        arms: tuple[Arm, ...] | None = None,
-        overlaps: tuple[tuple[str, str], ...] = YUMI_OVERLAPS,
+        arms: tuple[str, ...] | None = None,
         margins: Margins = STANDARD_MARGINS,
     ) -> None:
         """Build the pairs to check and the broad phase over them.
 
         Args:
             robot: Where the robot stands and how it moves; not modified.
-            scene: Static boxes.
+            scene: Static boxes, and boxes that arms carry.
             arms: Arms that take part; the others are ignored. All when None.
-            overlaps: Names of shapes that may overlap.
             margins: Distances to keep.
+
+        Raises:
+            InputError: A box is carried by an arm that the robot does not have, or two boxes
+                have the same name.
         """
         self.robot = robot
         self._geometry = robot.geometry.copy()
-        self._static = {box.name for box in scene.boxes}
+        self._boxes = _named_boxes(robot, scene)
         for box in scene.boxes:
             self._geometry.addGeometryObject(_static_geometry(box))
+        for carried in scene.attached:
+            self._geometry.addGeometryObject(_attached_geometry(robot, carried))
+        self._tools = _tool_bodies(robot)
         self._ignored = set(robot.arms) - set(robot.arms if arms is None else arms)
-        self._body_names = [self._body_name(shape) for shape in self._geometry.geometryObjects]
-        self._add_pairs(frozenset(map(frozenset, overlaps)))
+        shapes = self._geometry.geometryObjects
+        self._body_names = [self._body_name(shape) for shape in shapes]
+        self._arms = [_arm_of(robot, shape.parentJoint) for shape in shapes]
+        self._add_pairs(frozenset(map(frozenset, robot.spec.overlaps)))
         self._data = robot.model.createData()
         self._geometry_data = self._geometry.createData()
         self._margins_m = [
-            self._margin(self._body_names[pair.first], self._body_names[pair.second], margins)
-            for pair in self._geometry.collisionPairs
+            self._margin(pair.first, pair.second, margins) for pair in self._geometry.collisionPairs
         ]
         self._demand_margins()
         self._manager = pin.BroadPhaseManager_NaiveCollisionManager(
@@ -97,7 +93,7 @@ class CollisionModel:
         names = self._body_names
         return {(names[pair.first], names[pair.second]) for pair in self._geometry.collisionPairs}
 
-    def set_openings(self, openings_m: Mapping[Arm, float]) -> None:
+    def set_openings(self, openings_m: Mapping[ArmName, float]) -> None:
         """Take note of how far the grippers are open [m] in all later checks."""
         self._q = self.robot.complete(np.zeros(self.robot.size), openings_m)
 
@@ -151,12 +147,9 @@ class CollisionModel:
         )
 
     def _body_name(self, shape: pin.GeometryObject) -> str:
-        if shape.name in self._static:
+        if shape.name in self._boxes:
             return str(shape.name)
         return str(self.robot.model.frames[shape.parentFrame].name)
-
-    def _arm_of(self, body: str) -> Arm | None:
-        return next((arm for arm in self.robot.arms if body.startswith(f"{arm}_")), None)
 
     def _add_pairs(self, overlaps: frozenset[frozenset[str]]) -> None:
         self._geometry.removeAllCollisionPairs()
@@ -167,10 +160,16 @@ class CollisionModel:
                 bodies = frozenset((self._body_names[first], self._body_names[second]))
                 names = frozenset((shapes[first].name, shapes[second].name))
                 fixed = shapes[first].parentJoint == shapes[second].parentJoint
-                if self._ignored & {self._arm_of(body) for body in bodies}:
+                if self._ignored & {self._arms[first], self._arms[second]}:
                     continue
-                if not fixed and bodies not in neighbours and names not in overlaps:
+                excused = bodies in neighbours or overlaps & {bodies, names}
+                if not fixed and not excused and not self._may_touch(bodies):
                     self._geometry.addCollisionPair(pin.CollisionPair(first, second))
+
+    def _may_touch(self, bodies: frozenset[str]) -> bool:
+        """Return whether a box of the scene or in a hand may be touched by the other body."""
+        boxes = [self._boxes[body] for body in bodies if body in self._boxes]
+        return any(bodies & set(box.touched_by) for box in boxes)
 
     def _neighbours(self) -> set[frozenset[str]]:
         """Return the pairs of links that a joint connects, and the fingers of each hand."""
@@ -182,7 +181,7 @@ class CollisionModel:
             for b in links
             if a.parentJoint in (b.parentJoint, model.parents[b.parentJoint])
         }
-        for spec in self.robot.specs.values():
+        for spec in self.robot.spec.arms.values():
             fingers = [model.getJointId(name) for name in spec.fingers]
             pairs.add(frozenset(link.name for link in links if link.parentJoint in fingers))
         return pairs
@@ -193,15 +192,63 @@ class CollisionModel:
         ):
             request.security_margin = margin
 
-    def _margin(self, first: str, second: str, margins: Margins) -> float:
-        if first in self._static or second in self._static:
-            finger = "_finger_" in first or "_finger_" in second
-            return margins.finger_world_m if finger else margins.world_m
-        arms = {self._arm_of(first), self._arm_of(second)}
+    def _margin(self, first: int, second: int, margins: Margins) -> float:
+        bodies = self._body_names[first], self._body_names[second]
+        boxes = [self._boxes[body] for body in bodies if body in self._boxes]
+        carried = [box.margin_m for box in boxes if isinstance(box, AttachedBox)]
+        if carried:
+            return min(carried)
+        if boxes:
+            return margins.finger_world_m if self._tools & set(bodies) else margins.world_m
+        arms = {self._arms[first], self._arms[second]}
         return margins.arms_m if None not in arms and len(arms) == 2 else margins.own_m
 
 
+def _named_boxes(robot: RobotModel, scene: PlanningScene) -> dict[str, StaticBox | AttachedBox]:
+    boxes: dict[str, StaticBox | AttachedBox] = {}
+    everything: list[StaticBox | AttachedBox] = [*scene.boxes, *scene.attached]
+    for box in everything:
+        if box.name in boxes or robot.model.existFrame(box.name):
+            raise InputError(
+                f"planning scene: two bodies are called {box.name!r}; expected one of each name"
+            )
+        boxes[box.name] = box
+    for carried in scene.attached:
+        if carried.arm not in robot.arms:
+            raise InputError(
+                f"planning scene: {carried.name}: no arm {carried.arm!r}; "
+                f"{closest(carried.arm, [*robot.arms])}"
+            )
+    return boxes
+
+
+def _arm_of(robot: RobotModel, joint: int) -> str | None:
+    """Return which arm moves what hangs on a joint; None for what no arm moves."""
+    for arm, spec in robot.spec.arms.items():
+        first = robot.model.getJointId(spec.joints[0])
+        if joint in robot.model.subtrees[first]:
+            return arm
+    return None
+
+
+def _tool_bodies(robot: RobotModel) -> set[str]:
+    """Return the links that come as close to things as fingers do."""
+    model = robot.model
+    tools = {link for spec in robot.spec.arms.values() for link in spec.tool_links}
+    fingers = {model.getJointId(name) for spec in robot.spec.arms.values() for name in spec.fingers}
+    links = [frame for frame in model.frames if frame.type == pin.FrameType.BODY]
+    return tools | {str(link.name) for link in links if link.parentJoint in fingers}
+
+
 def _static_geometry(box: StaticBox) -> pin.GeometryObject:
-    return pin.GeometryObject(
-        box.name, 0, pin.SE3(np.eye(3), np.array(box.centre_m)), coal.Box(*box.size_m)
-    )
+    return pin.GeometryObject(box.name, 0, _pose(box), coal.Box(*box.size_m))
+
+
+def _attached_geometry(robot: RobotModel, box: AttachedBox) -> pin.GeometryObject:
+    tool = robot.model.frames[robot.model.getFrameId(robot.spec.arms[box.arm].tcp)]
+    placed = tool.placement * _pose(box)
+    return pin.GeometryObject(box.name, tool.parentJoint, placed, coal.Box(*box.size_m))
+
+
+def _pose(box: StaticBox | AttachedBox) -> pin.SE3:
+    return pin.XYZQUATToSE3(np.array([*box.centre_m, *box.quat_xyzw]))

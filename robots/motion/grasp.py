@@ -1,4 +1,4 @@
-"""Which poses of a tool satisfy a goal: yaw, its symmetry, and leaning where that helps."""
+"""Which poses of a tool satisfy a goal: turns that serve as well, and leaning where that helps."""
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
@@ -8,11 +8,12 @@ from math import cos, pi, sin
 import numpy as np
 import pinocchio as pin
 
-from robots.interfaces import Floats, TcpGoal
+from robots.interfaces import Floats, Goal, PoseGoal, TcpGoal
 
 # Yaws that are tried when a goal leaves the yaw free: eight over half a turn.
 _FREE_YAWS = tuple(pi * step / 8 for step in range(8))
 _DOWN: Floats = np.array([0.0, 0.0, -1.0])
+_AXES: Floats = np.eye(3)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -21,7 +22,7 @@ class ToolPose:
 
     Attributes:
         T_world_tcp: Pose of the tool.
-        tilt_rad: How far it leans from straight down.
+        tilt_rad: How far it leans from the orientation asked for.
     """
 
     T_world_tcp: pin.SE3
@@ -34,16 +35,44 @@ def pointing_down(yaw_rad: float) -> Floats:
     return np.array([[c, s, 0.0], [s, -c, 0.0], [0.0, 0.0, -1.0]])
 
 
-def tool_poses(goal: TcpGoal, shoulder_m: Floats) -> Iterator[tuple[ToolPose, ...]]:
+def tool_poses(goal: Goal, shoulder_m: Floats) -> Iterator[tuple[ToolPose, ...]]:
     """Yield groups of poses that satisfy a goal, the straightest group first.
-
-    Each pose comes with its twin, half a turn about the tool's axis, which is the same grasp.
-    Leaning is first about the opening axis, which keeps both fingertips level, then outward,
-    the fingers ahead of the wrist, and last inward, for places close to the body.
 
     Args:
         goal: What is asked of the tool.
         shoulder_m: Where the arm starts, in the world, shape (3,).
+    """
+    return _turned(goal) if isinstance(goal, PoseGoal) else _downward(goal, shoulder_m)
+
+
+def _turned(goal: PoseGoal) -> Iterator[tuple[ToolPose, ...]]:
+    """Yield poses in one orientation, turned about its axis, then leaning to all sides."""
+    asked = pin.Quaternion(goal.quat_xyzw).normalized().toRotationMatrix()
+    turns = [asked @ _about(turn, _AXES[2]) for turn in goal.turns_rad]
+    yield tuple(ToolPose(pin.SE3(turn, goal.position_m), 0.0) for turn in turns)
+    tilts = (0.5 * goal.max_tilt_rad, goal.max_tilt_rad) if goal.max_tilt_rad > 0.0 else ()
+    for tilt in tilts:
+        leans = [
+            asked @ _about(sign * tilt, axis) @ asked.T for axis in _AXES[:2] for sign in (1, -1)
+        ]
+        yield tuple(
+            ToolPose(pin.SE3(lean @ turn, goal.position_m), tilt)
+            for lean in leans
+            for turn in turns
+        )
+
+
+def _about(angle_rad: float, axis: Floats) -> Floats:
+    rotation: Floats = pin.AngleAxis(angle_rad, axis).toRotationMatrix()
+    return rotation
+
+
+def _downward(goal: TcpGoal, shoulder_m: Floats) -> Iterator[tuple[ToolPose, ...]]:
+    """Yield poses of a gripper that points down.
+
+    Each pose comes with its twin, half a turn about the tool's axis, which is the same grasp.
+    Leaning is first about the opening axis, which keeps both fingertips level, then outward,
+    the fingers ahead of the wrist, and last inward, for places close to the body.
     """
     yaws = _FREE_YAWS if goal.yaw_rad is None else (goal.yaw_rad,)
     yield tuple(pose for yaw in yaws for pose in _twins(goal, pointing_down(yaw), 0.0))
@@ -90,4 +119,4 @@ def _one_lean(towards: Floats, _yaw_rad: float) -> tuple[Floats, ...]:
 def _leant(rotation: Floats, towards: Floats, tilt_rad: float) -> Floats:
     """Turn a rotation so that the tool's axis leans towards a horizontal unit vector."""
     axis = np.cross(_DOWN, towards)
-    return pin.AngleAxis(tilt_rad, axis).toRotationMatrix() @ rotation
+    return _about(tilt_rad, axis) @ rotation

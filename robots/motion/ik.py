@@ -31,7 +31,7 @@ def solve_pose(
     Args:
         arm: Kinematics of the arm.
         T_world_tcp: Target of the tool.
-        start_rad: Joint positions to descend from, shape (7,).
+        start_rad: Joint positions to descend from, shape (n,).
         max_steps: Steps before giving up.
     """
     q = start_rad.copy()
@@ -56,36 +56,55 @@ def _damped_step(jacobian: Floats, error: Floats, size: float) -> Floats:
     return step * (_STEP_CAP_RAD / largest) if largest > _STEP_CAP_RAD else step
 
 
+def nearest_turns(arm: ArmKinematics, positions_rad: Floats, present_rad: Floats) -> Floats:
+    """Return the same pose of all links with whole turns added so that joints move least.
+
+    Args:
+        arm: Kinematics of the arm; turns stay within its limits.
+        positions_rad: Shape (n,).
+        present_rad: Where the joints are, shape (n,).
+    """
+    turns = np.round((present_rad - positions_rad) / (2.0 * np.pi))
+    least = np.ceil((arm.lower - positions_rad) / (2.0 * np.pi))
+    most = np.floor((arm.upper - positions_rad) / (2.0 * np.pi))
+    nearest: Floats = positions_rad + 2.0 * np.pi * np.clip(turns, least, most)
+    return nearest
+
+
+# A tool that points a radian elsewhere is as far away as one that is so many metres off.
+_AXIS_M = 0.4
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class StartBank:
     """Joint positions from which arms start their descent, and where the tool is at each.
 
-    A start whose tool is already near the target converges more often and keeps the elbow
-    in an ordinary place.
+    A start whose tool is already near the target, and points its way, converges more often and
+    keeps the elbow in an ordinary place.
 
     Attributes:
-        positions_rad: Shape (n, 7).
-        tools_m: Tool positions in the world [m], shape (n, 3).
+        positions_rad: Shape (b, n).
+        tools: Position [m] and scaled axis of each tool in the world, shape (b, 6).
     """
 
     positions_rad: Floats
-    tools_m: Floats
+    tools: Floats
 
-    def near(self, position_m: Floats, count: int) -> Iterator[Floats]:
-        """Yield the starts whose tools are nearest to a position, nearest first."""
-        distances = np.sum((self.tools_m - position_m) ** 2, axis=1)
+    def near(self, T_world_tcp: pin.SE3, count: int) -> Iterator[Floats]:
+        """Yield the starts whose tools are nearest to a pose, nearest first."""
+        distances = np.sum((self.tools - _place(T_world_tcp)) ** 2, axis=1)
         for index in np.argsort(distances, kind="stable")[:count]:
             yield self.positions_rad[index]
 
 
 def random_bank(arm: ArmKinematics, rng: np.random.Generator, count: int) -> StartBank:
-    """Return random configurations of an arm whose tool points down at least roughly."""
-    positions: list[Floats] = []
-    tools: list[Floats] = []
-    while len(positions) < count:
-        q = rng.uniform(arm.lower, arm.upper)
-        T_world_tcp = arm.tcp_pose(q)
-        if T_world_tcp.rotation[2, 2] < -0.5:
-            positions.append(q)
-            tools.append(T_world_tcp.translation.copy())
-    return StartBank(np.array(positions), np.array(tools))
+    """Return random configurations of an arm; joints that turn freely stay within one turn."""
+    lower, upper = np.maximum(arm.lower, -np.pi), np.minimum(arm.upper, np.pi)
+    narrow = arm.upper - arm.lower < 2.0 * np.pi
+    lower, upper = np.where(narrow, arm.lower, lower), np.where(narrow, arm.upper, upper)
+    positions = rng.uniform(lower, upper, (count, len(lower)))
+    return StartBank(positions, np.array([_place(arm.tcp_pose(q)) for q in positions]))
+
+
+def _place(T_world_tcp: pin.SE3) -> Floats:
+    return np.concatenate([T_world_tcp.translation, _AXIS_M * T_world_tcp.rotation[:, 2]])

@@ -1,9 +1,10 @@
 """Straight tool motions of one or both arms, in step, with the orientation of the tools kept.
 
-An arm of seven joints can follow a line in many ways, since its elbow is free to swing. The
-elbow goes as it comes, pushed away from joint limits and singularities; where that ends at a
-limit or in a collision, variants with a steady swing to either side are tried. Swings are
-spread over the whole line, since sudden ones would have to be driven slowly.
+An arm of seven joints can follow a line in many ways, since its elbow is free to swing; one of
+six joints has a single way. The elbow goes as it comes, pushed away from joint limits and
+singularities; where that ends at a limit or in a collision, variants with a steady swing to
+either side are tried. Swings are spread over the whole line, since sudden ones would have to be
+driven slowly.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -15,7 +16,7 @@ from math import ceil
 import numpy as np
 import pinocchio as pin
 
-from robots.interfaces import Arm, Floats
+from robots.interfaces import ArmName, Floats
 from robots.motion.ik import solve_pose
 from robots.motion.model import SINGULAR_ZONE, ArmKinematics, RobotModel
 
@@ -34,7 +35,7 @@ class ArmLine:
     """How one arm follows a line.
 
     Attributes:
-        samples_rad: Configurations from the start on, shape (k, 7), equally spaced on the line.
+        samples_rad: Configurations from the start on, shape (k, n), equally spaced on the line.
         complete: Whether the last sample is the line's end.
     """
 
@@ -59,7 +60,7 @@ def follow_line(
 
     Args:
         arm: Kinematics of the arm.
-        start_rad: Joint positions at the line's beginning, shape (7,).
+        start_rad: Joint positions at the line's beginning, shape (n,).
         displacement_m: Vector of the tool in the world [m], shape (3,).
         count: Steps to cut the line into.
         swing_rad: Motion of the elbow that is added at each step [rad].
@@ -82,9 +83,11 @@ def _swing_along(
     samples = [q]
     free: Floats | None = None
     for pose in poses[1:]:
-        free = _free_direction(arm, q, free)
-        swing = swing_rad + _push(arm, q, free)
-        swung = np.clip(q + swing * free, arm.lower, arm.upper)
+        swung = q
+        if arm.redundant:
+            free = _free_direction(arm, q, free)
+            swing = swing_rad + _push(arm, q, free)
+            swung = np.clip(q + swing * free, arm.lower, arm.upper)
         following = solve_pose(arm, pose, swung)
         if following is None or np.abs(following - q).max() > _LARGEST_STEP_RAD:
             break
@@ -116,8 +119,8 @@ def _smoothed(arm: ArmKinematics, samples: Floats, poses: Sequence[pin.SE3]) -> 
 
 
 def line_variants(
-    robot: RobotModel, start_rad: Floats, displacements_m: Mapping[Arm, Floats]
-) -> Iterator[dict[Arm, ArmLine]]:
+    robot: RobotModel, start_rad: Floats, displacements_m: Mapping[ArmName, Floats]
+) -> Iterator[dict[ArmName, ArmLine]]:
     """Yield ways in which arms can follow their lines, the most promising first.
 
     Args:
@@ -138,7 +141,7 @@ def line_variants(
         kinematics = robot.kinematics[arm]
         swung = (
             follow_line(kinematics, starts[arm], displacement, count, swing)
-            for swing in _SWINGS_RAD
+            for swing in (_SWINGS_RAD if kinematics.redundant else ())
         )
         lines = [plain[arm], *swung]
         ranked[arm] = sorted(lines, key=partial(_promise, kinematics), reverse=True)
@@ -160,7 +163,7 @@ def comfort(arm: ArmKinematics, q: Floats) -> float:
     return min(1.0, max(0.0, room) / _LIMIT_ZONE_RAD, arm.dexterity(q) / SINGULAR_ZONE)
 
 
-def in_step(robot: RobotModel, start_rad: Floats, lines: Mapping[Arm, ArmLine]) -> Floats:
+def in_step(robot: RobotModel, start_rad: Floats, lines: Mapping[ArmName, ArmLine]) -> Floats:
     """Return configurations of all arms while some follow complete lines, shape (k, n)."""
     count = len(next(iter(lines.values())).samples_rad)
     samples: Floats = np.tile(start_rad, (count, 1))

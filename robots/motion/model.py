@@ -6,43 +6,17 @@ world frame.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 import pinocchio as pin
 
-from robots.descriptions import urdf_path
-from robots.descriptions.yumi import (
-    LEVERS_M,
-    REACH_M,
-    arm_joint_names,
-    finger_joint_names,
-    tcp_frame,
-)
-from robots.interfaces import ARMS, Arm, Floats
+from executive.core.errors import InputError
+from executive.core.registry import closest
+from robots.descriptions.specs import ArmSpec, RobotSpec, yumi_spec
+from robots.interfaces import ArmName, Floats
 from robots.limits import JointLimits
+from robots.motion.extents import levers_m, longest_reach_m
 from robots.placement import Placement
-
-
-@dataclass(frozen=True, slots=True)
-class ArmSpec:
-    """Names by which an arm is found in a URDF.
-
-    Attributes:
-        joints: In chain order.
-        fingers: Joints that each make half of the opening.
-        tcp: Frame of the tool centre point.
-        levers_m: How far the farthest part that a joint moves is from its axis, each [m].
-        reach_m: The tool is never farther than this from the first joint's frame [m].
-    """
-
-    joints: tuple[str, ...]
-    fingers: tuple[str, ...]
-    tcp: str
-    levers_m: tuple[float, ...]
-    reach_m: float
-
 
 # Dexterity below which small motions of the tool begin to ask for large ones of the joints.
 SINGULAR_ZONE = 0.1
@@ -57,17 +31,24 @@ class ArmKinematics:
 
     Attributes:
         model: The reduced model.
-        lower: What inverse kinematics may use [rad], shape (7,); the limits are a little wider.
+        lower: What inverse kinematics may use [rad], shape (n,); the limits are a little wider.
         upper: As `lower`.
+        reach_m: The tool is never farther than this from the first joint [m].
     """
 
-    def __init__(self, model: pin.Model, tcp: str) -> None:
+    def __init__(self, model: pin.Model, tcp: str, reach_m: float | None = None) -> None:
         """Take the reduced model of an arm and the name of its tool frame."""
         self.model = model
         self._data = model.createData()
         self._tcp = model.getFrameId(tcp)
         self.lower: Floats = model.lowerPositionLimit + LIMIT_RESERVE_RAD
         self.upper: Floats = model.upperPositionLimit - LIMIT_RESERVE_RAD
+        self.reach_m = longest_reach_m(model, self._tcp) if reach_m is None else reach_m
+
+    @property
+    def redundant(self) -> bool:
+        """Whether joints can move while the tool rests."""
+        return int(self.model.nv) > 6
 
     @property
     def shoulder_m(self) -> Floats:
@@ -75,12 +56,12 @@ class ArmKinematics:
         return self.model.jointPlacements[1].translation.copy()
 
     def tcp_pose(self, positions_rad: Floats) -> pin.SE3:
-        """Return T_world_tcp at joint positions of shape (7,)."""
+        """Return T_world_tcp at joint positions of shape (n,)."""
         pin.forwardKinematics(self.model, self._data, positions_rad)
         return pin.updateFramePlacement(self.model, self._data, self._tcp).copy()
 
     def tcp_jacobian(self, positions_rad: Floats) -> tuple[pin.SE3, Floats]:
-        """Return T_world_tcp and the Jacobian of the tool's twist in its own frame, (6, 7)."""
+        """Return T_world_tcp and the Jacobian of the tool's twist in its own frame, (6, n)."""
         pin.computeJointJacobians(self.model, self._data, positions_rad)
         T_world_tcp = pin.updateFramePlacement(self.model, self._data, self._tcp)
         jacobian = pin.getFrameJacobian(self.model, self._data, self._tcp, pin.ReferenceFrame.LOCAL)
@@ -92,23 +73,40 @@ class ArmKinematics:
 
 
 class RobotModel:
-    """A robot with one or more arms, standing in the world."""
+    """A robot with one or more arms, standing in the world.
 
-    def __init__(self, urdf: Path, arms: Mapping[Arm, ArmSpec], placement: Placement) -> None:
-        """Load a URDF and put its root where the placement says."""
-        self.model = pin.buildModelFromUrdf(str(urdf))
-        self.geometry = pin.buildGeomFromUrdf(self.model, str(urdf), pin.GeometryType.COLLISION)
-        self.specs = dict(arms)
-        self.arms: tuple[Arm, ...] = tuple(arms)
+    Attributes:
+        spec: Names of its parts.
+        arms: Names of its arms, in the order of configurations.
+        model: Pinocchio's model of the whole robot.
+        geometry: Its shapes.
+        kinematics: Of each arm alone.
+        levers_m: How far the farthest part that a joint moves is from its axis, shape (n,).
+        limits: Of the joints.
+    """
+
+    def __init__(self, spec: RobotSpec, placement: Placement) -> None:
+        """Load a URDF and put its root where the placement says.
+
+        Raises:
+            InputError: A joint or frame that the specification names is not in the URDF.
+        """
+        self.spec = spec
+        self.model = pin.buildModelFromUrdf(str(spec.urdf))
+        self.geometry = pin.buildGeomFromUrdf(
+            self.model, str(spec.urdf), pin.GeometryType.COLLISION
+        )
+        self.arms: tuple[str, ...] = tuple(spec.arms)
+        _demand_names(spec, self.model)
         self._stand(placement)
-        names = [name for spec in arms.values() for name in spec.joints]
+        names = [name for arm in spec.arms.values() for name in arm.joints]
         self._arm_indices = np.array([self._index(name) for name in names])
         self._finger_indices = {
-            arm: np.array([self._index(name) for name in spec.fingers])
-            for arm, spec in arms.items()
+            name: np.array([self._index(finger) for finger in arm.fingers], dtype=int)
+            for name, arm in spec.arms.items()
         }
-        self.kinematics = {arm: self._reduced(spec) for arm, spec in arms.items()}
-        self.levers_m: Floats = np.array([m for spec in arms.values() for m in spec.levers_m])
+        self.kinematics = {name: self._reduced(arm) for name, arm in spec.arms.items()}
+        self.levers_m: Floats = np.concatenate([self._levers(arm) for arm in spec.arms.values()])
         self.limits = JointLimits.from_speeds(
             self.model.lowerPositionLimit[self._arm_indices],
             self.model.upperPositionLimit[self._arm_indices],
@@ -120,17 +118,17 @@ class RobotModel:
         """Number of arm joints."""
         return len(self._arm_indices)
 
-    def joints_of(self, arm: Arm) -> slice:
+    def joints_of(self, arm: str) -> slice:
         """Return where an arm's joints are in a configuration."""
         start = 0
         for name in self.arms:
-            stop = start + len(self.specs[name].joints)
+            stop = start + len(self.spec.arms[name].joints)
             if name == arm:
                 return slice(start, stop)
             start = stop
         raise KeyError(arm)
 
-    def complete(self, positions_rad: Floats, openings_m: Mapping[Arm, float]) -> Floats:
+    def complete(self, positions_rad: Floats, openings_m: Mapping[ArmName, float]) -> Floats:
         """Return Pinocchio's configuration of the whole robot, fingers included."""
         q: Floats = np.zeros(self.model.nq)
         q[self._arm_indices] = positions_rad
@@ -142,7 +140,7 @@ class RobotModel:
         """Overwrite the arm joints of a complete configuration, in place."""
         q[self._arm_indices] = positions_rad
 
-    def tcp_pose(self, arm: Arm, positions_rad: Floats) -> pin.SE3:
+    def tcp_pose(self, arm: str, positions_rad: Floats) -> pin.SE3:
         """Return T_world_tcp of an arm at a configuration of all arms."""
         return self.kinematics[arm].tcp_pose(positions_rad[self.joints_of(arm)])
 
@@ -169,15 +167,29 @@ class RobotModel:
             self.model.getJointId(name) for name in self.model.names[1:] if name not in spec.joints
         ]
         reduced = pin.buildReducedModel(self.model, locked, pin.neutral(self.model))
-        return ArmKinematics(reduced, spec.tcp)
+        return ArmKinematics(reduced, spec.tcp, spec.reach_m)
+
+    def _levers(self, spec: ArmSpec) -> Floats:
+        if spec.levers_m is not None:
+            return np.array(spec.levers_m)
+        return levers_m(self.model, self.geometry, spec.joints)
+
+
+def _demand_names(spec: RobotSpec, model: pin.Model) -> None:
+    for arm, parts in spec.arms.items():
+        joints = [name for name in (*parts.joints, *parts.fingers) if name not in model.names]
+        if joints:
+            known = ", ".join(list(model.names)[1:])
+            raise InputError(
+                f"{spec.name}: {arm}: no joint {joints[0]!r} that moves; expected one of: {known}"
+            )
+        if not model.existFrame(parts.tcp):
+            frames = [f.name for f in model.frames if f.type == pin.FrameType.BODY]
+            raise InputError(
+                f"{spec.name}: {arm}: no link {parts.tcp!r}; {closest(parts.tcp, frames)}"
+            )
 
 
 def yumi_model(placement: Placement) -> RobotModel:
     """Return the YuMi, left arm first, at its place."""
-    specs = {
-        arm: ArmSpec(
-            arm_joint_names(arm), finger_joint_names(arm), tcp_frame(arm), LEVERS_M, REACH_M
-        )
-        for arm in ARMS
-    }
-    return RobotModel(urdf_path("yumi"), specs, placement)
+    return RobotModel(yumi_spec(), placement)

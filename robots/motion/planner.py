@@ -8,11 +8,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from robots.interfaces import Arm, Floats, MotionFailure, TcpGoal, Trajectory
+from robots.interfaces import ArmName, Floats, Goal, MotionFailure, Trajectory
 from robots.motion.line import ArmLine, in_step, line_steps, line_variants
 from robots.motion.line_timing import time_curve
 from robots.motion.model import RobotModel
 from robots.motion.path import PathSearch, Space
+from robots.motion.search import called
 from robots.motion.solver import GoalSolver
 from robots.motion.timing import cut_corners, stop_at_waypoints
 from robots.motion.verify import find_fault
@@ -73,7 +74,15 @@ class MotionPlanner:
         self._seed = seed
         self.requests = 0
 
-    def observe(self, positions_rad: Floats, openings_m: Mapping[Arm, float]) -> None:
+    def set_scene(self, scene: PlanningScene) -> None:
+        """Take note of what stands around the robot, and what it carries, in all later plans.
+
+        Raises:
+            InputError: An arm that carries something is not known, or names are not unique.
+        """
+        self.solver.set_scene(scene)
+
+    def observe(self, positions_rad: Floats, openings_m: Mapping[ArmName, float]) -> None:
         """Take note of where the arms stand and how far grippers are open, for what follows.
 
         What is too close where the arms stand may stay so, but get no closer.
@@ -82,7 +91,7 @@ class MotionPlanner:
         self.solver.together.excuse(positions_rad)
 
     def to_goals(
-        self, start_rad: Floats, goals: Mapping[Arm, TcpGoal]
+        self, start_rad: Floats, goals: Mapping[ArmName, Goal]
     ) -> Trajectory | MotionFailure:
         """Plan to goals of some arms, at least one; the others stay where they are."""
         found = self.solver.configurations(goals, start_rad, self.settings.goal_solutions)
@@ -99,7 +108,7 @@ class MotionPlanner:
         return self._to_any(start_rad, [end_rad], self.robot.arms)
 
     def along_lines(
-        self, start_rad: Floats, displacements_m: Mapping[Arm, Floats]
+        self, start_rad: Floats, displacements_m: Mapping[ArmName, Floats]
     ) -> Trajectory | MotionFailure:
         """Plan straight tool motions of at least one arm, in step, orientation kept."""
         failures: list[MotionFailure] = []
@@ -117,8 +126,8 @@ class MotionPlanner:
     def _line(
         self,
         start: Floats,
-        displacements_m: Mapping[Arm, Floats],
-        lines: Mapping[Arm, ArmLine],
+        displacements_m: Mapping[ArmName, Floats],
+        lines: Mapping[ArmName, ArmLine],
     ) -> Trajectory | MotionFailure:
         for arm, line in lines.items():
             if not line.complete:
@@ -135,7 +144,7 @@ class MotionPlanner:
         return _untimed("line") if trajectory is None else self._checked(trajectory)
 
     def _to_any(
-        self, start: Floats, ends: Sequence[Floats], arms: Sequence[Arm]
+        self, start: Floats, ends: Sequence[Floats], arms: Sequence[str]
     ) -> Trajectory | MotionFailure:
         rng = np.random.default_rng([self._seed, self.requests])
         self.requests += 1
@@ -176,20 +185,22 @@ class MotionPlanner:
     def _checked(self, trajectory: Trajectory) -> Trajectory | MotionFailure:
         return find_fault(trajectory, self.limits, self.solver.together) or trajectory
 
-    def _no_path(self, arms: Sequence[Arm], ends: Sequence[Floats]) -> MotionFailure:
+    def _no_path(self, arms: Sequence[str], ends: Sequence[Floats]) -> MotionFailure:
         tried = min(len(ends), self.settings.path_goals)
         text = (
-            f"{' and '.join(arms)} arm: no path to any of {tried} configurations"
+            f"{called(*arms)}: no path to any of {tried} configurations"
             f" within {self.settings.path_checks} collision checks each"
         )
         return MotionFailure("motion.no_path", "path", text)
 
 
-def _cut_short(arm: Arm, displacements_m: Mapping[Arm, Floats], line: ArmLine) -> MotionFailure:
+def _cut_short(
+    arm: ArmName, displacements_m: Mapping[ArmName, Floats], line: ArmLine
+) -> MotionFailure:
     length_m = float(np.linalg.norm(displacements_m[arm]))
     possible_m = length_m * (len(line.samples_rad) - 1) / line_steps(*displacements_m.values())
     text = (
-        f"{arm} arm: only {possible_m:.3f} m of the {length_m:.3f} m line is within the joint"
+        f"{called(arm)}: only {possible_m:.3f} m of the {length_m:.3f} m line is within the joint"
         " limits"
     )
     return MotionFailure("motion.unreachable", "line", text)

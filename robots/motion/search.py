@@ -7,10 +7,11 @@ from itertools import product
 
 import numpy as np
 
-from robots.interfaces import Arm, Floats, MotionFailure, TcpGoal
+from robots.descriptions.specs import ARM
+from robots.interfaces import Floats, Goal, MotionFailure, PoseGoal
 from robots.motion.collision import CollisionModel
 from robots.motion.grasp import ToolPose, tool_poses
-from robots.motion.ik import solve_pose
+from robots.motion.ik import nearest_turns, solve_pose
 from robots.motion.line import comfort, follow_line, line_steps
 from robots.motion.model import RobotModel
 
@@ -24,7 +25,7 @@ class Solution:
     """Joint positions of one arm that satisfy a goal.
 
     Attributes:
-        positions_rad: Shape (7,).
+        positions_rad: Shape (n,).
         cost: Roughly the seconds to get there, plus penalties for leaning and discomfort.
     """
 
@@ -38,8 +39,8 @@ class GoalSearch:
     def __init__(
         self,
         robot: RobotModel,
-        arm: Arm,
-        goal: TcpGoal,
+        arm: str,
+        goal: Goal,
         present_rad: Floats,
         checker: CollisionModel,
     ) -> None:
@@ -50,7 +51,7 @@ class GoalSearch:
         self._speeds = robot.limits.velocity[self._joints]
         self._goal = goal
         shoulder_m = self._arm.shoulder_m
-        within = np.linalg.norm(goal.position_m - shoulder_m) <= robot.specs[arm].reach_m
+        within = np.linalg.norm(goal.position_m - shoulder_m) <= self._arm.reach_m
         self._poses = tool_poses(goal, shoulder_m) if within else iter(())
         self._present = present_rad
         self._checker = checker
@@ -67,7 +68,7 @@ class GoalSearch:
         """Look among the next poses, those that lean a little more; False when none are left.
 
         Args:
-            starts: Joint positions to descend from, shape (7,) each.
+            starts: Joint positions to descend from, shape (n,) each.
             count: Solutions to look for among these poses.
         """
         poses = next(self._poses, None)
@@ -84,18 +85,22 @@ class GoalSearch:
             return self._failure("motion.collision", text, pair)
         if self._cut_short:
             return self._failure("motion.unreachable", "the straight motions onward do not fit")
-        yaw = self._goal.yaw_rad
-        turned = "any yaw" if yaw is None else f"yaw {yaw:.2f} rad"
-        text = f"out of reach with {turned} and up to {self._goal.max_tilt_rad:.2f} rad of tilt"
+        turned, tilt_rad = _orientation(self._goal), self._goal.max_tilt_rad
+        text = f"out of reach with {turned} and up to {tilt_rad:.2f} rad of tilt"
         return self._failure("motion.unreachable", text)
 
     def _failure(self, code: str, text: str, pair: tuple[str, str] | None = None) -> MotionFailure:
-        return MotionFailure(code, "ik", f"{self._name} arm to {place(self._goal)}: {text}", pair)
+        return MotionFailure(
+            code, "ik", f"{called(self._name)} to {place(self._goal)}: {text}", pair
+        )
 
     def _try(self, attempts: Iterator[tuple[Floats, ToolPose]], enough: int) -> None:
         for start, pose in attempts:
             q = solve_pose(self._arm, pose.T_world_tcp, start)
-            if q is not None and self._is_new(q):
+            if q is None:
+                continue
+            q = nearest_turns(self._arm, q, self._present[self._joints])
+            if self._is_new(q):
                 self._seen.append(q)
                 self._judge(q, pose.tilt_rad)
                 if len(self._found) >= enough:
@@ -137,7 +142,18 @@ class GoalSearch:
         return travel + _DISCOMFORT_COST * discomfort + _TILT_COST * tilt_rad
 
 
-def place(goal: TcpGoal) -> str:
+def called(*arms: str) -> str:
+    """Return what arms are called in a message; a single one needs no name."""
+    return "arm" if arms == (ARM,) else f"{' and '.join(arms)} arm"
+
+
+def _orientation(goal: Goal) -> str:
+    if isinstance(goal, PoseGoal):
+        return f"quaternion ({', '.join(f'{value:.2f}' for value in goal.quat_xyzw)})"
+    return "any yaw" if goal.yaw_rad is None else f"yaw {goal.yaw_rad:.2f} rad"
+
+
+def place(goal: Goal) -> str:
     """Return a goal's position for a message."""
     x, y, z = goal.position_m
     return f"({x:.3f}, {y:.3f}, {z:.3f}) m"

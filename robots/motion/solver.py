@@ -5,15 +5,16 @@ from itertools import islice, product
 
 import numpy as np
 
-from robots.interfaces import Arm, Floats, MotionFailure, TcpGoal
+from robots.interfaces import ArmName, Floats, Goal, MotionFailure
 from robots.motion.collision import CollisionModel
+from robots.motion.grasp import tool_poses
 from robots.motion.ik import random_bank
 from robots.motion.line import follow_line, in_step, line_steps
 from robots.motion.model import RobotModel
-from robots.motion.search import GoalSearch, Solution, place
+from robots.motion.search import GoalSearch, Solution, called, place
 from robots.placement import PlanningScene
 
-BANK_SIZE = 200
+BANK_SIZE = 800
 _BANK_STARTS = 6
 
 
@@ -32,20 +33,34 @@ class GoalSolver:
             seed: Of the random starts.
         """
         self.robot = robot
-        self.together = CollisionModel(robot, scene)
-        self.alone = {arm: CollisionModel(robot, scene, arms=(arm,)) for arm in robot.arms}
+        self._openings_m: dict[str, float] = {}
+        self.set_scene(scene)
         self._rest_rad = rest_rad
         rng = np.random.default_rng(seed)
         self._banks = {
             arm: random_bank(robot.kinematics[arm], rng, BANK_SIZE) for arm in robot.arms
         }
 
-    def set_openings(self, openings_m: Mapping[Arm, float]) -> None:
+    def set_scene(self, scene: PlanningScene) -> None:
+        """Take note of what stands around the robot, and what it carries, in all later checks.
+
+        Raises:
+            InputError: See `CollisionModel`.
+        """
+        robot = self.robot
+        self.together = CollisionModel(robot, scene)
+        alone = (self.together,) if len(robot.arms) == 1 else ()
+        models = alone or (CollisionModel(robot, scene, arms=(arm,)) for arm in robot.arms)
+        self.alone = dict(zip(robot.arms, models, strict=True))
+        self.set_openings(self._openings_m)
+
+    def set_openings(self, openings_m: Mapping[ArmName, float]) -> None:
         """Take note of how far the grippers are open [m] in all later checks."""
+        self._openings_m = dict(openings_m.items())
         for model in (self.together, *self.alone.values()):
             model.set_openings(openings_m)
 
-    def reaches(self, arm: Arm, goal: TcpGoal, present_rad: Floats) -> bool:
+    def reaches(self, arm: str, goal: Goal, present_rad: Floats) -> bool:
         """Return whether an arm, alone in the cell, has a solution."""
         search = GoalSearch(self.robot, arm, goal, present_rad, self.alone[arm])
         starts = self._starts(arm, goal, present_rad)
@@ -54,7 +69,7 @@ class GoalSolver:
         return bool(search.found())
 
     def configurations(
-        self, goals: Mapping[Arm, TcpGoal], present_rad: Floats, count: int
+        self, goals: Mapping[ArmName, Goal], present_rad: Floats, count: int
     ) -> list[Floats] | MotionFailure:
         """Return configurations of all arms that satisfy goals, best first.
 
@@ -84,8 +99,8 @@ class GoalSolver:
 
     def _free(
         self,
-        goals: Mapping[Arm, TcpGoal],
-        found: Mapping[Arm, list[Solution]],
+        goals: Mapping[ArmName, Goal],
+        found: Mapping[ArmName, list[Solution]],
         present_rad: Floats,
         tried: set[tuple[int, ...]],
     ) -> Iterator[Floats]:
@@ -99,14 +114,14 @@ class GoalSolver:
                     yield q
 
     def _combined(
-        self, arms: Iterable[Arm], choice: Sequence[Solution], present_rad: Floats
+        self, arms: Iterable[str], choice: Sequence[Solution], present_rad: Floats
     ) -> Floats:
         q = present_rad.copy()
         for arm, solution in zip(arms, choice, strict=True):
             q[self.robot.joints_of(arm)] = solution.positions_rad
         return q
 
-    def _can_go_on(self, goals: Mapping[Arm, TcpGoal], q: Floats) -> bool:
+    def _can_go_on(self, goals: Mapping[ArmName, Goal], q: Floats) -> bool:
         """Return whether two arms can make their onward motions in step; one has been checked."""
         legs = zip(*(goal.onward_m for goal in goals.values()), strict=False)
         for leg in legs if len(goals) > 1 else ():
@@ -125,25 +140,26 @@ class GoalSolver:
 
     def _clash(
         self,
-        goals: Mapping[Arm, TcpGoal],
-        searches: Mapping[Arm, GoalSearch],
+        goals: Mapping[ArmName, Goal],
+        searches: Mapping[ArmName, GoalSearch],
         present_rad: Floats,
     ) -> MotionFailure:
         found = {arm: search.found() for arm, search in searches.items()}
         best = self._combined(found, next(iter(_ranked(found))), present_rad)
         pair = self.together.colliding_pair(best)
         names = " and ".join(pair) if pair else "the straight motions onward"
-        places = " and ".join(f"{arm} arm to {place(goal)}" for arm, goal in goals.items())
+        places = " and ".join(f"{called(arm)} to {place(goal)}" for arm, goal in goals.items())
         text = f"{places}: each can be reached, but not at once: {names} collide"
         return MotionFailure("motion.collision", "ik", text, pair)
 
-    def _starts(self, arm: Arm, goal: TcpGoal, present_rad: Floats) -> list[Floats]:
+    def _starts(self, arm: str, goal: Goal, present_rad: Floats) -> list[Floats]:
         joints = self.robot.joints_of(arm)
-        near = self._banks[arm].near(goal.position_m, _BANK_STARTS)
+        asked = next(tool_poses(goal, self.robot.kinematics[arm].shoulder_m))[0]
+        near = self._banks[arm].near(asked.T_world_tcp, _BANK_STARTS)
         return [present_rad[joints], self._rest_rad[joints], *near]
 
 
-def _ranked(found: Mapping[Arm, list[Solution]]) -> list[tuple[Solution, ...]]:
+def _ranked(found: Mapping[ArmName, list[Solution]]) -> list[tuple[Solution, ...]]:
     """Return all choices of one solution an arm; the slowest arm decides how long it takes."""
     return sorted(
         product(*found.values()),

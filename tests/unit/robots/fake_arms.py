@@ -1,4 +1,4 @@
-"""Arms that are where they are told to be, the moment they are told."""
+"""Arms that are where they are told to be, the moment they are told; of any robot."""
 
 import numpy as np
 import pytest
@@ -11,9 +11,9 @@ OPENINGS_M = {"open": 0.05, "cage": 0.012, "pinch": 0.0}
 class FakeArms:
     """An `ArmsDriver` in memory with perfect tracking; a test moves time on with `finish`."""
 
-    def __init__(self, positions_rad):
+    def __init__(self, positions_rad, grippers=ARMS):
         self.positions_rad = np.array(positions_rad, dtype=float)
-        self.openings_m = dict.fromkeys(ARMS, OPENINGS_M["open"])
+        self.openings_m = dict.fromkeys(grippers, OPENINGS_M["open"])
         self.running = None
         self.is_held = False
         self.executed = []
