@@ -11,6 +11,7 @@ from executive.core.world import StreamMessage
 from simulation.arms_driver import SimArmsDriver
 from simulation.cable.configuration_file import configuration_from_file
 from simulation.cable.configurations import starting_configuration
+from simulation.cable.tiers import tier_cable
 from simulation.cable.truth import CableTruth, cable_truth
 from simulation.clock import SimClock
 from simulation.overhead_camera import OverheadCamera
@@ -171,4 +172,6 @@ class TableCell:
 def _lay_cable(cable: CableScenario, rng: np.random.Generator) -> Floats:
     if cable.file:
         return configuration_from_file(Path(cable.file))
+    if cable.tier is not None:
+        return tier_cable(cable.tier, rng, leaves_view=cable.leaves_view).nodes_m
     return starting_configuration(cable.knot, rng)

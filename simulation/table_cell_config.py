@@ -1,14 +1,14 @@
 """What can be set about the table cell: light to import, checked before anything is built."""
 
 from collections.abc import Mapping
-from typing import Annotated, TypeVar
+from typing import Annotated, Self, TypeVar
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 from pydantic_core import ErrorDetails
 
 from executive.core.errors import InputError
 from executive.core.registry import closest
-from simulation.cable.knot_names import KnotName
+from simulation.cable.knot_names import KnotName, TierName
 
 
 class _Document(BaseModel):
@@ -16,15 +16,29 @@ class _Document(BaseModel):
 
 
 class CableScenario(_Document):
-    """What lies on the table.
+    """What lies on the table: from a file, else of a tier, else with one knot.
 
     Attributes:
         knot: Which knot is tied into a cable that is laid at random.
+        tier: One of the thesis's tiers instead: which knots, how many crossings, and how the
+            cable lies is drawn.
+        leaves_view: Whether one end of a tier's cable is out of the camera's view; drawn where
+            it is None.
         file: JSON file `{"nodes_m": [[x, y, z], ...]}` whose centre line is laid instead.
     """
 
     knot: KnotName = "overhand"
+    tier: TierName | None = None
+    leaves_view: bool | None = None
     file: str = ""
+
+    @model_validator(mode="after")
+    def _one_source(self) -> Self:
+        if self.file and self.tier is not None:
+            raise ValueError("a cable comes from a file or is of a tier; try leaving one out")
+        if self.leaves_view is not None and self.tier is None:
+            raise ValueError("leaves_view is for cables of a tier; try adding tier: C1")
+        return self
 
 
 class TableScenario(_Document):
@@ -104,6 +118,8 @@ def _fault(model: type[BaseModel], detail: ErrorDetails) -> str:
     if detail["type"] == "literal_error":
         expected = detail["ctx"]["expected"]
         return f"{name}: got {detail['input']!r}; expected {expected}"
+    if detail["type"] == "value_error":
+        return f"{name}: {detail['ctx']['error']}"
     return f"{name}: got {detail['input']!r}; {detail['msg']}"
 
 

@@ -27,7 +27,12 @@ class Area:
 
     def contains(self, points_m: Floats) -> bool:
         """Return whether all points (N, 2) lie inside."""
-        return bool(((points_m >= self.low_m) & (points_m <= self.high_m)).all())
+        return bool(self.holds(points_m).all())
+
+    def holds(self, points_m: Floats) -> NDArray[np.bool_]:
+        """Say of each point (N, 2) whether it lies inside, shape (N,)."""
+        within = (points_m >= self.low_m) & (points_m <= self.high_m)
+        return np.asarray(within.all(axis=1))
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,6 +108,11 @@ def grow_end(
             retreats += 1
             del history[max(1, len(history) - int(rng.integers(2, 7))) :]
     return None
+
+
+def fits_on(piece: Floats, curve: Floats, rules: LayoutRules) -> bool:
+    """Return whether a piece that goes on after a curve (N, 2) keeps clear of it."""
+    return _clear(piece, curve, rules)
 
 
 def _next_arc(

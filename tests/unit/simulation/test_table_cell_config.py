@@ -23,12 +23,25 @@ def test_a_scenario_names_the_knot_or_the_file():
         ({"cabel": {}}, "scenario: cabel: unknown key; did you mean 'cable'? (known: cable)"),
         (
             {"cable": {"knots": "none"}},
-            "scenario: cable.knots: unknown key; did you mean 'knot'? (known: file, knot)",
+            "scenario: cable.knots: unknown key; did you mean 'knot'? "
+            "(known: file, knot, leaves_view, tier)",
         ),
         (
             {"cable": {"knot": "granny"}},
             "scenario: cable.knot: got 'granny'; expected 'none', 'overhand', "
             "'figure_8', 'overhand_honda', 'bowline', 'linked_overhand' or 'figure_8_honda'",
+        ),
+        (
+            {"cable": {"tier": "c1"}},
+            "scenario: cable.tier: got 'c1'; expected 'C1', 'C2' or 'C3'",
+        ),
+        (
+            {"cable": {"tier": "C1", "file": "a.json"}},
+            "scenario: cable: a cable comes from a file or is of a tier; try leaving one out",
+        ),
+        (
+            {"cable": {"leaves_view": True}},
+            "scenario: cable: leaves_view is for cables of a tier; try adding tier: C1",
         ),
     ],
 )

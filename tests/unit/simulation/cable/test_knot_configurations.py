@@ -5,17 +5,12 @@ import pytest
 
 from executive.core.errors import InputError
 from perception.cable.topology import Knottedness, classify_curve
-from simulation.cable.configurations import (
-    REACHABLE,
-    ConfigurationRules,
-    draw_plan,
-    ends_in_sight,
-    settle,
-    starting_configuration,
-)
+from simulation.cable.configurations import ends_in_sight, settle, starting_configuration
 from simulation.cable.knots import KNOT_NAMES, TEMPLATES
 from simulation.cable.parameters import RodParameters
+from simulation.cable.plans import draw_plan
 from simulation.cable.rod import Rod
+from simulation.cable.rules import REACHABLE, ConfigurationRules
 from simulation.cable.truth import cable_truth, centre_line_crossings
 
 LEAST_CROSSINGS = {
@@ -70,11 +65,11 @@ def test_settling_keeps_the_knot_of_every_plan():
     rng, parameters, rules = np.random.default_rng(5), RodParameters(), ConfigurationRules()
     seen = 0
     while seen < 2:
-        plan = draw_plan("overhand", rng, parameters, rules)
+        plan = draw_plan(("overhand",), rng, parameters, rules)
         if plan is None:
             continue
         seen += 1
-        before, after = classify_curve(plan), classify_curve(settle(plan, parameters))
+        before, after = classify_curve(plan[0]), classify_curve(settle(plan[0], parameters))
         assert (before.state, before.reduced_crossings) == (after.state, after.reduced_crossings)
 
 
