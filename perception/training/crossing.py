@@ -1,6 +1,7 @@
 """Train the crossing classifier: `python -m perception.training.crossing --out FOLDER`."""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 import cv2
 import numpy as np
@@ -21,6 +22,8 @@ from perception.training.scenes import Scene, SceneConfig, make_scene
 MIXED = 512
 # Small scenes have more crossings for their pixels.
 EXTENTS = (28.0, 46.0)
+# Thin cables are hard to tell, so this share of scenes has none wider than that [px].
+THIN = (0.6, 7.0)
 SCALE_ERROR = 0.18
 # Cameras differ in these ways; shares of scenes, and how much.
 GAMMA = (0.5, 0.6, 1.7)
@@ -53,7 +56,7 @@ class CrossingTask:
         number = first
         while True:
             rng = np.random.default_rng([seed, number])
-            scene = make_scene(rng, SceneConfig(extent=float(rng.choice(EXTENTS))))
+            scene = make_scene(rng, _scene_config(rng))
             found = meetings(rng, scene)
             drawn = scene_ribbons(rng, scene, found)
             for _ in range(self._times):
@@ -88,6 +91,12 @@ class CrossingTask:
             "right": float((on_top > 0.0).float().mean()),
             "real_right": float(((logits[:, 1] > 0.0) == (real > 0.5)).float().mean()),
         }
+
+
+def _scene_config(rng: np.random.Generator) -> SceneConfig:
+    config = SceneConfig(extent=float(rng.choice(EXTENTS)))
+    share, widest_px = THIN
+    return replace(config, widest_px=widest_px) if rng.random() < share else config
 
 
 def scene_ribbons(

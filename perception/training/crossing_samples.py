@@ -4,6 +4,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter1d
 
 from perception.cable.classifiers.passes import StrandPass
@@ -81,7 +82,9 @@ def _crossings(
         if not _in_view(scene, lines[crossing.over[0]][int(crossing.over[1])]):
             continue
         strands = [_piece(lines[cable], node) for cable, node in (crossing.over, crossing.under)]
-        passes = _crossing_of(_erring(rng, strands, scene.width_px, config))
+        erring = _erring(rng, strands, scene.width_px, config)
+        true = _near(strands)
+        passes = _crossing_of(erring, true.meeting, true.turns.tolist())
         if passes is not None:
             yield Meeting(passes, real=True)
 
@@ -138,21 +141,57 @@ def erring_line(
     return line
 
 
-def _crossing_of(pieces: Sequence[_Piece]) -> tuple[StrandPass, StrandPass] | None:
-    """Return where two lines cross near their meeting, None where errors have parted them."""
-    if min(len(piece.points) for piece in pieces) < 3:
-        return None
-    nodes = intersections(pieces[0].points, pieces[1].points)[:2]
+@dataclass(frozen=True, slots=True, eq=False)
+class _Near:
+    """Where two lines cross near their meeting, in the order of the first.
+
+    Attributes:
+        arcs: Arc lengths on both lines, shape (2, K).
+        turns: To which side the second line crosses, shape (K,).
+        meeting: Which of them is nearest to the meeting; 0 without any.
+    """
+
+    arcs: Floats
+    turns: NDArray[np.int64]
+    meeting: int
+
+
+def _near(pieces: Sequence[_Piece]) -> _Near:
+    *nodes, turns = intersections(pieces[0].points, pieces[1].points)
     at = np.array([_arc(piece, found) for piece, found in zip(pieces, nodes, strict=True)])
     here = np.array([_arc(piece, np.array([piece.node])) for piece in pieces])
     reach = MOVED_NODES * float(arc_lengths(pieces[0].points)[-1]) / (2.0 * REACH_NODES)
-    near = np.flatnonzero((np.abs(at - here) < reach).all(axis=0))
-    if len(near) % 2 == 0:
+    gaps = np.abs(at - here).max(axis=0, initial=0.0)
+    near = np.flatnonzero(gaps < reach)
+    near = near[np.argsort(at[0, near])]
+    return _Near(at[:, near], turns[near], int(gaps[near].argmin()) if len(near) else 0)
+
+
+def _crossing_of(
+    pieces: Sequence[_Piece], meeting: int = 0, turns: Sequence[int] = (0,)
+) -> tuple[StrandPass, StrandPass] | None:
+    """Return where two lines cross near their meeting, None where errors have parted them.
+
+    Args:
+        pieces: Both lines.
+        meeting: Which of the true crossings near there is meant.
+        turns: To which sides the second strand really crosses near there.
+    """
+    if min(len(piece.points) for piece in pieces) < 3:
         return None
-    middle = near[np.argsort(at[0, near])[len(near) // 2]]
+    found = _near(pieces)
+    if len(turns) > 1:
+        # Neighbours are told apart only where errors have left all of them.
+        if list(found.turns) != list(turns):
+            return None
+        which = meeting
+    elif len(found.turns) % 2 == 1:
+        which = len(found.turns) // 2
+    else:
+        return None
     first, second = (
-        StrandPass(piece.points, float(place[middle]))
-        for piece, place in zip(pieces, at, strict=True)
+        StrandPass(piece.points, float(arc))
+        for piece, arc in zip(pieces, found.arcs[:, which], strict=True)
     )
     return first, second
 
