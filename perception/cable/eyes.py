@@ -1,6 +1,7 @@
 """Look at a whole image before anything is followed: what is cable, and where it ends."""
 
-from typing import Protocol
+from collections.abc import Sequence
+from typing import Protocol, runtime_checkable
 
 from perception.cable.endpoints import EndpointConfig
 from perception.cable.observation import Observation, observe
@@ -18,6 +19,15 @@ class Eye(Protocol):
 
     def endpoints(self, image: GreyImage) -> tuple[Endpoint, ...]:
         """Return the ends of cables, the surest first."""
+        ...
+
+
+@runtime_checkable
+class EndJudge(Protocol):
+    """Who follows cables, and can tell whether one ends where it seems to."""
+
+    def judged(self, image: GreyImage, endpoints: Sequence[Endpoint]) -> tuple[Endpoint, ...]:
+        """Return ends, the surest first, with what it believes of them, too."""
         ...
 
 

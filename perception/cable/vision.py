@@ -3,6 +3,7 @@
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,6 +11,7 @@ from numpy.typing import NDArray
 from perception.cable.belief import any_knotted, knot_types, knotted_probability, reading_of
 from perception.cable.coverage import explained_share
 from perception.cable.crowding import doubt_shared
+from perception.cable.eyes import EndJudge
 from perception.cable.grasp_points import GraspConfig
 from perception.cable.interfaces import HypothesisTracer
 from perception.cable.knots import find_knots
@@ -33,6 +35,8 @@ REACHED_PX = 20.0
 THROUGH_PX = 4.0
 # A trace of which more than this share lies on another one follows the same cable.
 SAME_CABLE = 0.5
+# Where the tracer believes less that a cable ends, none does.
+LEAST_END = 0.2
 # A second point this far into the cable tells a tracer which way to go from an end.
 AHEAD_PX = 4.0
 # Other ways to read a cable than the likeliest are weighed down to this belief, so many at most.
@@ -75,6 +79,8 @@ class GreyImageVision:
         self._tracer = TRACERS[self._config.tracer](self._eye)
         self._classifier = CLASSIFIERS[self._config.classifier](self._eye)
         self._starter = AnalyticTracer(observe=self._eye.observe)
+        # Steps of perception ask one after the other about the same image.
+        self._ended = lru_cache(maxsize=2)(self._find_ends)
 
     def cable_pixels(self, image: GreyImage) -> NDArray[np.bool_]:
         """Say which pixels show cable or connector, shape (height, width)."""
@@ -93,7 +99,8 @@ class GreyImageVision:
 
     def endpoints(self, image: GreyImage) -> tuple[Endpoint, ...]:
         """Find the ends of cables, the surest first."""
-        return self._eye.endpoints(self._seen(image))
+        seen = self._seen(image)
+        return self._ended(seen.tobytes(), seen.shape)
 
     def start_points(self, image: GreyImage, endpoint: Endpoint) -> Points | None:
         """Follow the cable for about 96 px from an end; None when other strands are too near."""
@@ -148,6 +155,15 @@ class GreyImageVision:
     def _seen(self, image: GreyImage) -> GreyImage:
         """Return the rows that show the table."""
         return image[: len(image) - self._config.hidden_rows]
+
+    def _find_ends(self, pixels: bytes, shape: tuple[int, ...]) -> tuple[Endpoint, ...]:
+        """Return the ends that are seen, but none where the tracer sees the cable go on."""
+        image = np.frombuffer(pixels, dtype=np.uint8).reshape(shape)
+        ends = self._eye.endpoints(image)
+        if not isinstance(self._tracer, EndJudge):
+            return ends
+        judged = self._tracer.judged(image, ends)
+        return tuple(end for end in judged if end.probability >= LEAST_END)
 
     def _cables(
         self, image: GreyImage, start_px: Points | None, endpoints: Sequence[Endpoint]

@@ -21,13 +21,15 @@ from perception.cable.observation import Observe
 from perception.cable.polyline import pixels_of
 from perception.cable.tracers.evidence import FEATURES, NONE_FEATURES, doubts, evidence
 from perception.cable.tracers.hypotheses import Hypothesis, hypotheses
+from perception.cable.tracers.outward import judged
 from perception.cable.tracers.search import SearchConfig
 from perception.cable.tracers.starts import from_start
 from perception.cable.tracers.steps import StepModel
 from perception.cable.tracers.survey import Survey, View, survey, view_from
 from perception.cable.types import Endpoint, Points, Trace, TraceEnd
 from perception.camera import GreyImage
-from perception.models.frames import Floats
+from perception.models.frames import Floats, scale_image
+from perception.models.tracer_crop import WIDTH
 
 FILE = "posterior.json"
 # A start with no more points than this at a known end tells nothing more than that end.
@@ -85,6 +87,8 @@ NOTHING = TracePosterior((), 1.0)
 class PosteriorTracer:
     """Implements `Tracer` by searches from all ends and a posterior over whole traces.
 
+    It also implements `perception.cable.eyes.EndJudge`.
+
     Args:
         folder: A trained version with `posterior.json`.
         observe: Gives mask and width of the cables; where it gives none at a start, they are
@@ -133,6 +137,14 @@ class PosteriorTracer:
             return first
         again = [self._asked(image, start_px, endpoints, view.wider(by)) for by in OTHER_WIDTHS]
         return max([first, *again], key=_best_belief)
+
+    def judged(self, image: GreyImage, endpoints: Sequence[Endpoint]) -> tuple[Endpoint, ...]:
+        """Return ends, the surest first, believed in as far as the cable is seen to stop there."""
+        view = self._view(image, endpoints[0].position_px[None]) if endpoints else None
+        if view is None:
+            return tuple(endpoints)
+        scaled = scale_image(image, view.width_px, WIDTH, self._model.zoom)
+        return judged(self._model, scaled, endpoints)
 
     def _asked(
         self, image: GreyImage, start_px: Points, endpoints: Sequence[Endpoint], view: View

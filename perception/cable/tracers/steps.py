@@ -79,7 +79,9 @@ class StepModel:
     def _beliefs(self, crops: Crop) -> tuple[Floats, Floats]:
         """Return the probability of each cell, shape (N, K, G, G), and of the end, shape (N,)."""
         self.looks += len(crops)
-        heat, stop = self._network(torch.from_numpy(crops))
+        heat, stop = self._network(
+            torch.from_numpy(crops).contiguous(memory_format=torch.channels_last)
+        )
         first = torch.softmax(step_logits(heat, stop) / self._temperature, 1)
         later = torch.softmax(heat[:, 1:].flatten(2) / self._temperature, 2)
         grid = SIZE // CELL
