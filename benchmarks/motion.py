@@ -115,7 +115,7 @@ def _solves(arm: ArmKinematics, target: pin.SE3, starts: Iterator[Floats]) -> bo
 def _broad_phase(robot: RobotModel, rng: np.random.Generator, count: int) -> list[Row]:
     collision = planner_in(robot, table_scene(), 0).solver.together
     samples = rng.uniform(robot.limits.lower, robot.limits.upper, (count, robot.size))
-    wrong = sum(collision.collides(q) != (collision.colliding_pair(q) is not None) for q in samples)
+    wrong = collision.disagreements(rng, count)
     began = time.perf_counter()
     for q in samples:
         collision.collides(q)

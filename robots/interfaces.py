@@ -6,7 +6,7 @@ opening direction of the fingers.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Literal, Protocol, TypeVar, runtime_checkable
 
 import numpy as np
@@ -62,6 +62,9 @@ class PoseGoal:
 
 
 Goal = TcpGoal | PoseGoal
+Cause = Literal[
+    "reach", "joint_limit", "collision", "onward", "search", "speed", "timing", "moving"
+]
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,12 +76,23 @@ class MotionFailure:
         stage: `ik`, `path`, `line`, `timing` or `verify`.
         text: A sentence for people, with arm, goal, pair and distance where known.
         pair: Names of the two bodies that collide, if that is the cause.
+        cause: What hinders, finer than the code.
+        distance_m: How far apart the pair is where it is closest to being free; below 0 they
+            overlap.
+        joint: Name of the joint whose limit hinders, if that is the cause.
+        tried: Descents, paths or ways along a line that were tried.
+        elapsed_ms: What the answer cost on this machine; not the same from run to run.
     """
 
     code: str
     stage: str
     text: str
     pair: tuple[str, str] | None = None
+    cause: Cause | None = None
+    distance_m: float | None = None
+    joint: str | None = None
+    tried: int = 0
+    elapsed_ms: float | None = field(default=None, compare=False)
 
 
 @runtime_checkable

@@ -122,5 +122,5 @@ class PlannedMotions:
         if state.moving:
             fastest = float(np.abs(state.velocities_rad_s).max())
             text = f"arms are still moving at {fastest:.2f} rad/s; plan when they rest"
-            return MotionFailure("motion.timing", "path", text)
+            return MotionFailure("motion.timing", "path", text, cause="moving")
         return self._note_state()

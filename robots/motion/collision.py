@@ -2,7 +2,8 @@
 
 The broad phase is Pinocchio's naive one: over the few dozen primitives here it is five times
 faster than testing every pair, and unlike the dynamic tree arrays it has missed no collision
-(coal issues 750 and 784). `agrees_with_pairwise` checks that on random configurations.
+(coal issues 750 and 784). `demand_agreement` checks that on random configurations
+before the first plan.
 """
 
 from collections.abc import Mapping
@@ -12,7 +13,7 @@ import coal
 import numpy as np
 import pinocchio as pin
 
-from executive.core.errors import InputError
+from executive.core.errors import DeviceError, InputError
 from executive.core.registry import closest
 from robots.interfaces import ArmName, Floats
 from robots.motion.model import RobotModel
@@ -117,6 +118,24 @@ class CollisionModel:
                 return self._body_names[pair.first], self._body_names[pair.second]
         return None
 
+    def distance_m(self, pair: tuple[str, str], positions_rad: Floats) -> float:
+        """Return how far apart two bodies are at a configuration [m]; below 0 they overlap.
+
+        Args:
+            pair: Two bodies that are checked.
+            positions_rad: Of all arms, shape (n,).
+        """
+        self.robot.write_arms(self._q, positions_rad)
+        pin.updateGeometryPlacements(
+            self.robot.model, self._data, self._geometry, self._geometry_data, self._q
+        )
+        names = self._body_names
+        return min(
+            float(pin.computeDistance(self._geometry, self._geometry_data, index).min_distance)
+            for index, shapes in enumerate(self._geometry.collisionPairs)
+            if {names[shapes.first], names[shapes.second]} == set(pair)
+        )
+
     def excuse(self, positions_rad: Floats) -> None:
         """Let pairs that are too close at a configuration be so, but no closer, from now on.
 
@@ -138,13 +157,25 @@ class CollisionModel:
             if result.min_distance <= margin:
                 request.security_margin = result.min_distance - _EXCUSE_M
 
-    def agrees_with_pairwise(self, rng: np.random.Generator, count: int) -> bool:
-        """Return whether broad phase and pairwise test agree on random configurations."""
+    def disagreements(self, rng: np.random.Generator, count: int) -> int:
+        """Return at how many of `count` random configurations the pairwise test disagrees."""
         limits = self.robot.limits
         samples = rng.uniform(limits.lower, limits.upper, (count, self.robot.size))
-        return all(
-            self.collides(sample) == (self.colliding_pair(sample) is not None) for sample in samples
-        )
+        return sum(self.collides(q) != (self.colliding_pair(q) is not None) for q in samples)
+
+    def demand_agreement(self, rng: np.random.Generator, count: int) -> None:
+        """Compare broad phase and pairwise test on random configurations.
+
+        Raises:
+            DeviceError: They disagree, as some broad phases of coal did.
+        """
+        wrong = self.disagreements(rng, count)
+        if wrong:
+            raise DeviceError(
+                f"collision checks: got {wrong} of {count} configurations in which the broad "
+                "phase disagrees with the test of all pairs; expected 0; try another release "
+                "of pin and coal"
+            )
 
     def _body_name(self, shape: pin.GeometryObject) -> str:
         if shape.name in self._boxes:

@@ -21,10 +21,16 @@ TOLERANCE = 1e-5  # of the twist's norm [m, rad]
 _STEP_CAP_RAD = 0.5
 _DAMPING = 1e-3
 _IDENTITY: Floats = np.eye(6)
+_UNLIMITED: Floats = np.array(np.inf)
 
 
 def solve_pose(
-    arm: ArmKinematics, T_world_tcp: pin.SE3, start_rad: Floats, max_steps: int = MAX_STEPS
+    arm: ArmKinematics,
+    T_world_tcp: pin.SE3,
+    start_rad: Floats,
+    max_steps: int = MAX_STEPS,
+    *,
+    limited: bool = True,
 ) -> Floats | None:
     """Return joint positions within limits that reach a pose, or None from this start.
 
@@ -33,8 +39,10 @@ def solve_pose(
         T_world_tcp: Target of the tool.
         start_rad: Joint positions to descend from, shape (n,).
         max_steps: Steps before giving up.
+        limited: Whether to stay within limits; without, one sees which limit hinders.
     """
     q = start_rad.copy()
+    lower, upper = (arm.lower, arm.upper) if limited else (_UNLIMITED * -1.0, _UNLIMITED)
     for _ in range(max_steps):
         T_now, jacobian = arm.tcp_jacobian(q)
         error = pin.log6(T_now.actInv(T_world_tcp)).vector
@@ -42,10 +50,10 @@ def solve_pose(
         if size < TOLERANCE:
             return q
         step = _damped_step(jacobian, error, size)
-        stuck = ((q <= arm.lower) & (step < 0.0)) | ((q >= arm.upper) & (step > 0.0))
+        stuck = ((q <= lower) & (step < 0.0)) | ((q >= upper) & (step > 0.0))
         if stuck.any():
             step = _damped_step(jacobian * ~stuck, error, size)
-        q = np.clip(q + step, arm.lower, arm.upper)
+        q = np.clip(q + step, lower, upper)
     return None
 
 

@@ -3,8 +3,11 @@
 Each request is answered from its arguments and the seed, counted by request, alone.
 """
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import wraps
+from time import perf_counter
+from typing import ParamSpec
 
 import numpy as np
 
@@ -16,8 +19,25 @@ from robots.motion.path import PathSearch, Space
 from robots.motion.search import called
 from robots.motion.solver import GoalSolver
 from robots.motion.timing import cut_corners, stop_at_waypoints
-from robots.motion.verify import find_fault
+from robots.motion.verify import collision_failure, find_fault
 from robots.placement import PlanningScene
+
+P = ParamSpec("P")
+_Answer = Trajectory | MotionFailure
+
+
+def _costed(method: Callable[P, _Answer]) -> Callable[P, _Answer]:
+    """Let a failure say what it cost."""
+
+    @wraps(method)
+    def timed(*args: P.args, **kwargs: P.kwargs) -> _Answer:
+        began = perf_counter()
+        answer = method(*args, **kwargs)
+        if isinstance(answer, MotionFailure):
+            return replace(answer, elapsed_ms=1e3 * (perf_counter() - began))
+        return answer
+
+    return timed
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,6 +110,7 @@ class MotionPlanner:
         self.solver.set_openings(openings_m)
         self.solver.together.excuse(positions_rad)
 
+    @_costed
     def to_goals(
         self, start_rad: Floats, goals: Mapping[ArmName, Goal]
     ) -> Trajectory | MotionFailure:
@@ -99,14 +120,18 @@ class MotionPlanner:
             return found
         return self._to_any(start_rad, found, tuple(goals))
 
+    @_costed
     def to_configuration(self, start_rad: Floats, end_rad: Floats) -> Trajectory | MotionFailure:
         """Plan to a configuration of all arms."""
-        pair = self.solver.together.colliding_pair(end_rad)
-        if pair is not None:
-            text = f"the configuration asked for collides: {' and '.join(pair)}"
-            return MotionFailure("motion.collision", "path", text, pair)
+        beyond = np.maximum(self.limits.lower - end_rad, end_rad - self.limits.upper)
+        if beyond.max() > 0.0:
+            return self._beyond_limits(end_rad, int(beyond.argmax()))
+        together = self.solver.together
+        if together.collides(end_rad):
+            return collision_failure(together, end_rad, "path", "at the configuration asked for")
         return self._to_any(start_rad, [end_rad], self.robot.arms)
 
+    @_costed
     def along_lines(
         self, start_rad: Floats, displacements_m: Mapping[ArmName, Floats]
     ) -> Trajectory | MotionFailure:
@@ -123,6 +148,15 @@ class MotionPlanner:
                 break
         return failures[0]
 
+    def _beyond_limits(self, end_rad: Floats, joint: int) -> MotionFailure:
+        name = [name for arm in self.robot.spec.arms.values() for name in arm.joints][joint]
+        lower, upper = self.limits.lower[joint], self.limits.upper[joint]
+        text = (
+            f"{name} is beyond its limits in the configuration asked for; got "
+            f"{end_rad[joint]:.3f} rad; expected {lower:.3f} to {upper:.3f} rad"
+        )
+        return MotionFailure("motion.unreachable", "path", text, cause="joint_limit", joint=name)
+
     def _line(
         self,
         start: Floats,
@@ -135,9 +169,7 @@ class MotionPlanner:
         samples = in_step(self.robot, start, lines)
         hit = next((q for q in samples if self.solver.together.collides(q)), None)
         if hit is not None:
-            pair = self.solver.together.colliding_pair(hit)
-            text = f"on the line, {' and '.join(pair or ('two', 'bodies'))} collide"
-            return MotionFailure("motion.collision", "line", text, pair)
+            return collision_failure(self.solver.together, hit, "line", "on the line")
         longest_m = max(float(np.linalg.norm(d)) for d in displacements_m.values())
         rate_1_s = self.settings.line_speed_m_s / max(longest_m, 1e-9)
         trajectory = time_curve(samples, self.limits, rate_1_s)
@@ -191,7 +223,7 @@ class MotionPlanner:
             f"{called(*arms)}: no path to any of {tried} configurations"
             f" within {self.settings.path_checks} collision checks each"
         )
-        return MotionFailure("motion.no_path", "path", text)
+        return MotionFailure("motion.no_path", "path", text, cause="search", tried=tried)
 
 
 def _cut_short(
@@ -203,8 +235,9 @@ def _cut_short(
         f"{called(arm)}: only {possible_m:.3f} m of the {length_m:.3f} m line is within the joint"
         " limits"
     )
-    return MotionFailure("motion.unreachable", "line", text)
+    return MotionFailure("motion.unreachable", "line", text, cause="reach")
 
 
 def _untimed(stage: str) -> MotionFailure:
-    return MotionFailure("motion.timing", stage, "Ruckig found no motion between two states")
+    text = "Ruckig found no motion between two states"
+    return MotionFailure("motion.timing", stage, text, cause="timing")

@@ -2,18 +2,18 @@
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import product
 
 import numpy as np
 
 from robots.descriptions.specs import ARM
-from robots.interfaces import Floats, Goal, MotionFailure, PoseGoal
+from robots.interfaces import Cause, Floats, Goal, MotionFailure, PoseGoal
 from robots.motion.collision import CollisionModel
 from robots.motion.grasp import ToolPose, tool_poses
 from robots.motion.ik import nearest_turns, solve_pose
 from robots.motion.line import comfort, follow_line, line_steps
-from robots.motion.model import RobotModel
+from robots.motion.model import ArmKinematics, RobotModel
 
 _DISTINCT_RAD = 0.1
 _TILT_COST = 0.8  # of leaning by a radian, in seconds of motion
@@ -34,7 +34,11 @@ class Solution:
 
 
 class GoalSearch:
-    """Collects distinct, collision-free solutions of one arm, and what became of the others."""
+    """Collects distinct, collision-free solutions of one arm, and what became of the others.
+
+    Attributes:
+        tried: Descents so far.
+    """
 
     def __init__(
         self,
@@ -58,7 +62,9 @@ class GoalSearch:
         self._seen: list[Floats] = []
         self._found: list[Solution] = []
         self._pairs: Counter[tuple[str, str]] = Counter()
-        self._cut_short = 0
+        self._distances_m: dict[tuple[str, str], float] = {}
+        self._cut_short = self.tried = 0
+        self._first: tuple[Sequence[Floats], tuple[ToolPose, ...]] = ((), ())
 
     def found(self) -> list[Solution]:
         """Return the solutions so far, the cheapest first."""
@@ -74,28 +80,62 @@ class GoalSearch:
         poses = next(self._poses, None)
         if poses is None:
             return False
+        if not self.tried:
+            self._first = starts, poses
         self._try(product(starts, poses), len(self._found) + count)
         return True
 
     def failure(self) -> MotionFailure:
         """Return why nothing was found."""
         if self._pairs and self._pairs.total() >= self._cut_short:
-            pair, hits = self._pairs.most_common(1)[0]
-            text = f"all {self._pairs.total()} ways collide, {hits} of them {' and '.join(pair)}"
-            return self._failure("motion.collision", text, pair)
+            return self._collision()
         if self._cut_short:
-            return self._failure("motion.unreachable", "the straight motions onward do not fit")
+            text = "the straight motions onward do not fit"
+            return self._failure("motion.unreachable", "onward", text)
         turned, tilt_rad = _orientation(self._goal), self._goal.max_tilt_rad
-        text = f"out of reach with {turned} and up to {tilt_rad:.2f} rad of tilt"
-        return self._failure("motion.unreachable", text)
-
-    def _failure(self, code: str, text: str, pair: tuple[str, str] | None = None) -> MotionFailure:
-        return MotionFailure(
-            code, "ik", f"{called(self._name)} to {place(self._goal)}: {text}", pair
+        asked = f"with {turned} and up to {tilt_rad:.2f} rad of tilt"
+        return self._beyond_limits(asked) or self._failure(
+            "motion.unreachable", "reach", f"out of reach {asked}"
         )
+
+    def _collision(self) -> MotionFailure:
+        pair, hits = self._pairs.most_common(1)[0]
+        distance_m = self._distances_m[pair]
+        apart = f"{1e3 * distance_m:.0f} mm apart" if distance_m > 0.0 else "in each other"
+        text = (
+            f"all {self._pairs.total()} ways collide, {hits} of them {' and '.join(pair)}, "
+            f"{apart} at best"
+        )
+        failure = self._failure("motion.collision", "collision", text)
+        return replace(failure, pair=pair, distance_m=distance_m)
+
+    def _beyond_limits(self, asked: str) -> MotionFailure | None:
+        """Return which limit hinders the way that goes least beyond one, if limits are all."""
+        arm, ways = self._arm, []
+        middle = 0.5 * (arm.lower + arm.upper)
+        for start, pose in product(*self._first):
+            q = solve_pose(arm, pose.T_world_tcp, start, limited=False)
+            if q is not None:
+                ways.append((q - middle + np.pi) % (2.0 * np.pi) - np.pi + middle)
+        if not ways:
+            return None
+        q = min(ways, key=lambda q: float(_beyond(arm, q).max()))
+        worst = int(_beyond(arm, q).argmax())
+        name = str(arm.model.names[worst + 1])
+        limit = arm.lower[worst] if q[worst] < arm.lower[worst] else arm.upper[worst]
+        text = (
+            f"out of reach {asked}: {name} would be at {q[worst]:.2f} rad; its limit is "
+            f"{limit:.2f} rad"
+        )
+        return replace(self._failure("motion.unreachable", "joint_limit", text), joint=name)
+
+    def _failure(self, code: str, cause: Cause, text: str) -> MotionFailure:
+        where = f"{called(self._name)} to {place(self._goal)}: {text}"
+        return MotionFailure(code, "ik", where, cause=cause, tried=self.tried)
 
     def _try(self, attempts: Iterator[tuple[Floats, ToolPose]], enough: int) -> None:
         for start, pose in attempts:
+            self.tried += 1
             q = solve_pose(self._arm, pose.T_world_tcp, start)
             if q is None:
                 continue
@@ -121,6 +161,8 @@ class GoalSearch:
         pair = self._checker.colliding_pair(whole)
         if pair is not None:
             self._pairs[pair] += 1
+            distance_m = self._checker.distance_m(pair, whole)
+            self._distances_m[pair] = max(distance_m, self._distances_m.get(pair, -np.inf))
         return False
 
     def _can_go_on(self, q: Floats) -> bool:
@@ -140,6 +182,12 @@ class GoalSearch:
         travel = float(times.max() + 0.2 * times.sum())
         discomfort = 1.0 - comfort(self._arm, q)
         return travel + _DISCOMFORT_COST * discomfort + _TILT_COST * tilt_rad
+
+
+def _beyond(arm: ArmKinematics, q: Floats) -> Floats:
+    """Return how far joints are beyond their limits [rad]."""
+    beyond: Floats = np.maximum(arm.lower - q, q - arm.upper)
+    return beyond
 
 
 def called(*arms: str) -> str:

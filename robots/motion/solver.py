@@ -15,6 +15,8 @@ from robots.motion.search import GoalSearch, Solution, called, place
 from robots.placement import PlanningScene
 
 BANK_SIZE = 800
+# Random configurations on which fast and thorough collision checks are held to agree.
+AGREEMENT_CHECKS = 100
 _BANK_STARTS = 6
 
 
@@ -31,12 +33,16 @@ class GoalSolver:
             scene: What stands around it.
             rest_rad: An ordinary configuration of all arms, one of the starts.
             seed: Of the random starts.
+
+        Raises:
+            DeviceError: The broad phase of collision checks cannot be trusted on this machine.
         """
         self.robot = robot
         self._openings_m: dict[str, float] = {}
         self.set_scene(scene)
         self._rest_rad = rest_rad
         rng = np.random.default_rng(seed)
+        self.together.demand_agreement(np.random.default_rng(seed), AGREEMENT_CHECKS)
         self._banks = {
             arm: random_bank(robot.kinematics[arm], rng, BANK_SIZE) for arm in robot.arms
         }
@@ -147,10 +153,14 @@ class GoalSolver:
         found = {arm: search.found() for arm, search in searches.items()}
         best = self._combined(found, next(iter(_ranked(found))), present_rad)
         pair = self.together.colliding_pair(best)
+        distance_m = self.together.distance_m(pair, best) if pair else None
         names = " and ".join(pair) if pair else "the straight motions onward"
         places = " and ".join(f"{called(arm)} to {place(goal)}" for arm, goal in goals.items())
         text = f"{places}: each can be reached, but not at once: {names} collide"
-        return MotionFailure("motion.collision", "ik", text, pair)
+        tried = sum(search.tried for search in searches.values())
+        return MotionFailure(
+            "motion.collision", "ik", text, pair, "collision", distance_m, tried=tried
+        )
 
     def _starts(self, arm: str, goal: Goal, present_rad: Floats) -> list[Floats]:
         joints = self.robot.joints_of(arm)

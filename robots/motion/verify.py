@@ -44,12 +44,19 @@ def _collisions(
 ) -> Iterator[MotionFailure]:
     for time, q in zip(times, positions, strict=True):
         if collision.collides(q):
-            pair = collision.colliding_pair(q)
-            names = " and ".join(pair) if pair else "two bodies"
-            yield MotionFailure(
-                "motion.collision", "verify", f"{names} collide after {time:.2f} s", pair
-            )
+            yield collision_failure(collision, q, "verify", f"after {time:.2f} s")
+
+
+def collision_failure(
+    collision: CollisionModel, positions_rad: Floats, stage: str, where: str
+) -> MotionFailure:
+    """Return a failure that names the two bodies that collide at a configuration."""
+    pair = collision.colliding_pair(positions_rad)
+    names = " and ".join(pair) if pair else "two bodies"
+    distance_m = collision.distance_m(pair, positions_rad) if pair else None
+    text = f"{where}, {names} collide"
+    return MotionFailure("motion.collision", stage, text, pair, "collision", distance_m)
 
 
 def _timing(text: str) -> MotionFailure:
-    return MotionFailure("motion.timing", "verify", f"the timed motion {text}")
+    return MotionFailure("motion.timing", "verify", f"the timed motion {text}", cause="timing")

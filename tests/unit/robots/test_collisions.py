@@ -4,6 +4,7 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
+from executive.core.errors import DeviceError
 from robots.interfaces import ARMS
 from robots.motion.collision import CollisionModel
 from robots.motion.grasp import pointing_down
@@ -21,13 +22,28 @@ def reaching(robot, arm, position_m, rotation):
 
 
 def test_broad_phase_agrees_with_the_pairwise_test(collision, rng):
-    assert collision.agrees_with_pairwise(rng, 1000)
+    assert collision.disagreements(rng, 1000) == 0
+
+
+def test_a_broad_phase_that_misses_collisions_is_refused(collision, rng, monkeypatch):
+    monkeypatch.setattr(collision, "collides", lambda _: False)
+    with pytest.raises(DeviceError, match="broad phase disagrees"):
+        collision.demand_agreement(rng, 100)
+
+
+def test_distances_are_those_of_the_named_bodies(robot, collision):
+    q = reaching(robot, "left", [-0.2, 0.0, 0.1], pointing_down(0.3))
+    apart = collision.distance_m(("left_finger_a", "table"), q)
+    lower = reaching(robot, "left", [-0.2, 0.0, 0.05], pointing_down(0.3))
+    assert collision.distance_m(("left_finger_a", "table"), lower) == pytest.approx(
+        apart - 0.05, abs=1e-4
+    )
 
 
 def test_broad_phase_agrees_while_a_pair_is_excused(robot, collision, rng):
     touching = reaching(robot, "left", [-0.2, 0.0, 0.004], pointing_down(0.0))
     collision.excuse(touching)
-    assert collision.agrees_with_pairwise(rng, 300)
+    assert collision.disagreements(rng, 300) == 0
 
 
 def test_home_is_free_with_open_and_shut_grippers(collision):

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from robots.interfaces import ARMS, MotionFailure, TcpGoal
+from robots.interfaces import ARMS, MotionFailure, PoseGoal, TcpGoal
 from robots.motion.grasp import tool_poses
 from robots.placement import HOME_RAD, REACH_OF_BOTH, REACH_OF_ONE
 
@@ -93,12 +93,22 @@ def test_out_of_reach_is_said_so(solver, far):
     failure = solver.configurations({"left": far}, HOME_RAD, 4)
     assert (failure.code, failure.stage) == ("motion.unreachable", "ik")
     assert "left arm" in failure.text
+    assert failure.cause in ("reach", "joint_limit")
+
+
+def test_a_pose_that_only_a_joint_limit_forbids_names_the_joint(solver):
+    turned = PoseGoal(np.array([-0.12, 0.014, 0.105]), np.array([-0.65, -0.21, 0.51, -0.52]))
+    failure = solver.configurations({"left": turned}, HOME_RAD, 4)
+    assert (failure.code, failure.cause) == ("motion.unreachable", "joint_limit")
+    assert failure.joint in failure.text
+    assert failure.tried > 0
 
 
 def test_a_goal_inside_the_table_names_the_table(solver):
     failure = solver.configurations({"left": goal(-0.2, 0.0, z=-0.02)}, HOME_RAD, 4)
     assert (failure.code, failure.stage) == ("motion.collision", "ik")
     assert "table" in failure.pair
+    assert -0.05 < failure.distance_m < 0.005
 
 
 def test_two_hands_in_one_place_name_both_arms(solver):
