@@ -47,6 +47,7 @@ _COMMANDS: Mapping[str, str] = MappingProxyType(
         "import": "executive.cli.cmd_import",
         "export": "executive.cli.cmd_export",
         "perceive": "executive.cli.cmd_perceive",
+        "affinity": "executive.cli.cmd_affinity",
         "train": "executive.cli.cmd_train",
         "doctor": "executive.cli.cmd_doctor",
     }

@@ -26,6 +26,7 @@ class _AffinityFile(BaseModel):
     prompt: str
     version: str
     date: str
+    licence: str = ""
     names: tuple[str, ...]
     rows: tuple[tuple[float, ...], ...]
 
@@ -39,12 +40,14 @@ class Origin:
         prompt: What it was asked; empty where there is no prompt.
         version: Version of the model or of the recipe.
         date: Day on which it was done, ISO 8601.
+        licence: Terms of the models.
     """
 
     model: str
     prompt: str = ""
     version: str = ""
     date: str = ""
+    licence: str = ""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -110,7 +113,7 @@ class AffinityMatrix:
         origin = self.origin
         document = _AffinityFile(
             format=1, model=origin.model, prompt=origin.prompt, version=origin.version,
-            date=origin.date, names=self.names, rows=rows,
+            date=origin.date, licence=origin.licence, names=self.names, rows=rows,
         )  # fmt: skip
         path.write_text(document.model_dump_json(indent=1) + "\n", encoding="utf-8")
 
@@ -155,7 +158,9 @@ def load_affinity(path: Path) -> AffinityMatrix:
         raise InputError(f"{path}: rows: expected {len(document.names)} values in each row")
     rows = np.array(document.rows, dtype=np.float64)
     _check(document.names, rows, str(path))
-    origin = Origin(document.model, document.prompt, document.version, document.date)
+    origin = Origin(
+        document.model, document.prompt, document.version, document.date, document.licence
+    )
     return AffinityMatrix(document.names, _tempered(rows, 1.0), origin)
 
 

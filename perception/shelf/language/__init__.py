@@ -1,0 +1,1 @@
+"""Models that score which object stands beside which; only building affinities needs them."""
