@@ -22,6 +22,8 @@ BLADE_LENGTH_M, BLADE_HEIGHT_M, BLADE_THICKNESS_M = 0.35, 0.07, 0.006
 CUP_RADIUS_M, CUP_AHEAD_M = 0.005, 0.012
 # Where the cups are along y of the suction frame [m]; y points down while the blade is upright.
 CUPS_M = (-0.024, -0.008, 0.008, 0.024)
+# The camera's frame in the end effector's: above the blade, so that it sees what that touches.
+CAMERA_M: Vec3 = (0.0, -0.085, 0.013)
 _CAPSULE_ALLOWANCE_M = 0.001  # the fits let mesh vertices stick out by up to 0.57 mm
 
 SUCTION_FRAME, BLADE_FRAME, CAMERA_FRAME = "suction", "blade", "tool_camera"
@@ -154,8 +156,7 @@ def _tool_links() -> list[Link]:
 
 def _tool_joints(last_link: str) -> list[Joint]:
     tip: Vec3 = (0.0, 0.0, BLADE_LENGTH_M + CUP_AHEAD_M)
-    # Above the blade, where the blade and what it touches are in view.
-    above: Vec3 = (0.0, -0.085, 0.0)
+    above, ahead = (0.0, CAMERA_M[1], 0.0), (0.0, 0.0, CAMERA_M[2])
     return [
         Joint("end_effector_mount", "fixed", last_link, "end_effector", *_END_EFFECTOR),
         Joint("bluction_mount", "fixed", "end_effector", "bluction"),
@@ -164,5 +165,5 @@ def _tool_joints(last_link: str) -> list[Joint]:
         Joint("blade_mount", "fixed", "bluction", BLADE_FRAME, (0.0, 0.0, BLADE_LENGTH_M)),
         Joint("camera_mount", "fixed", "bluction", "camera_body", above),
         # A camera's frame: z into the scene, x to the right, y down.
-        Joint("tool_camera_mount", "fixed", "camera_body", CAMERA_FRAME, (0.0, 0.0, 0.013)),
+        Joint("tool_camera_mount", "fixed", "camera_body", CAMERA_FRAME, ahead),
     ]

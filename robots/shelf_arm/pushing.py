@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from robots.descriptions.kinova import CUP_AHEAD_M
+from robots.descriptions.kinova import CUP_AHEAD_M, CUP_RADIUS_M
 from robots.interfaces import Floats
 from robots.shelf_arm.driver import Guard
 from robots.shelf_arm.motions import ActionError, ShelfMotions
@@ -69,7 +69,7 @@ def _lane(motions: ShelfMotions, shape: ToolShape, action: PushAlong) -> _Lane:
         x_m=side_m - sign * 0.5 * shape.blade_m,
         tip_m=thing.y_m - 0.5 * depth_m + alongside_m + CUP_AHEAD_M,
         height_m=thing.bottom_m + motions.settings.push_height_m,
-        gap_m=0.5 * shape.blade_m,
+        gap_m=0.5 * shape.blade_m - CUP_RADIUS_M,
         sign=sign,
     )
 

@@ -9,6 +9,7 @@ from math import pi
 
 import numpy as np
 
+from robots.descriptions.kinova import BLADE_LENGTH_M, CAMERA_M, CUP_AHEAD_M
 from robots.interfaces import Floats
 from robots.placement import Placement, PlanningScene, StaticBox
 
@@ -19,8 +20,15 @@ BASE_BEFORE_M, BASE_BELOW_M = 0.62, 0.45
 _CABINET_HEIGHT_M = 0.8
 _COUNTER_WIDTH_M, _COUNTER_GAP_M = 0.36, 0.03
 
+ROBOT = "kinova_j2s7s300"
+# The camera before the middle of the shelf, elbow up.
+HOME_RAD: Floats = np.radians([-6.4, 272.6, 174.0, 86.4, 6.1, 269.7, -6.1])
+
 # A level tool that looks into the shelf: x along the shelf, y down, z into it.
 LEVEL_TOOL: Floats = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
+# The camera in the suction frame: above the blade, behind its tip.
+T_TIP_CAMERA: Floats = np.eye(4)
+T_TIP_CAMERA[:3, 3] = CAMERA_M - np.array([0.0, 0.0, BLADE_LENGTH_M + CUP_AHEAD_M])
 
 
 @dataclass(frozen=True, slots=True)

@@ -45,7 +45,9 @@ class ShelfPhysics:
 
     Attributes:
         link_names: All links of the arm, the root first.
+        boards: What stands still.
         box_names: All boxes, in the order of their poses.
+        box_sizes_m: Their edge lengths, shape (N, 3).
         step_s: Length of a step.
     """
 
@@ -72,10 +74,12 @@ class ShelfPhysics:
         self._call("setTimeStep", step_s)
         self._call("setGravity", 0.0, 0.0, -GRAVITY_M_S2)
         self._call("setPhysicsEngineParameter", numSolverIterations=_SOLVER_ITERATIONS)
+        self.boards = scene.boxes
         self._boards = [self._add_board(board) for board in scene.boxes]
         self._bodies = {box.name: self._add_box(box) for box in boxes}
         self._names = {body: name for name, body in self._bodies.items()}
         self.box_names = tuple(self._bodies)
+        self.box_sizes_m = np.array([box.box.size_m for box in boxes]).reshape(-1, 3)
         self._robot_name = robot
         self._robot = self._add_arm(robot, scene)
         self._take_links()
