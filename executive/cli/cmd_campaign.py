@@ -1,180 +1,218 @@
 """`cellwright campaign`: many runs of one mission, and what they come to together."""
 
 import json
-import signal
-from collections.abc import Iterator
-from contextlib import contextmanager
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+from typer.core import TyperGroup
 
+from executive.cli.campaign_faults import faults
+from executive.cli.campaign_signals import terminated_like_interrupted
 from executive.cli.console import chatter, results
-from executive.cli.fault_runs import Campaign
-from executive.cli.fault_table import print_progress, summary, survived_percent, table
 from executive.core.errors import InputError
-from executive.engine.faults.processes import Processes
-from executive.engine.faults.store import CampaignFolder, CampaignPlan, FaultRun
-from executive.engine.faults.variants import Wanted, parse_kinds, variants
-from executive.engine.loading.loader import load_mission
 from executive.engine.running.runner import MissionOutcome
-from executive.inspector.fault_effects import seen_in
-from executive.inspector.past import PastRun
 
-campaign = typer.Typer(help="Run one mission many times.", no_args_is_help=True)
+if TYPE_CHECKING:
+    from executive.app.campaigns.campaign import Campaign
+    from executive.app.campaigns.jobs import RunRecord
+
+_RUN = "run"
+JsonOption = Annotated[bool, typer.Option("--json", help="Print JSON on stdout.")]
+
+
+class _RunByDefault(TyperGroup):
+    """What is no subcommand is the file of a campaign to run."""
+
+    def resolve_command(self, ctx: Any, args: list[str]) -> Any:
+        """Return a subcommand with its arguments, as the base class does."""
+        if args and args[0] not in self.commands:
+            args = [_RUN, *args]
+        return super().resolve_command(ctx, args)
+
+
+campaign = typer.Typer(
+    cls=_RunByDefault,
+    help="Run one mission many times: cellwright campaign FILE.",
+    no_args_is_help=True,
+    context_settings={"ignore_unknown_options": True},
+)
+campaign.command()(faults)
 
 
 @campaign.callback()
 def _group() -> None:
-    """Run one mission many times."""
+    """Run one mission many times: cellwright campaign FILE."""
 
 
-@campaign.command()
-def faults(
-    mission: Annotated[str, typer.Argument(help="Name of a mission, or its YAML file.")],
-    seed: Annotated[int, typer.Option(min=0, help="Seed of every run.")] = 0,
-    only: Annotated[
-        str, typer.Option(metavar="GLOB", help="Skills and keys to try: 'grasp_*|frame'.")
-    ] = "",
-    kinds: Annotated[
-        str, typer.Option(help="What goes wrong: some of fail, hang, raise, stale, drop.")
-    ] = "fail,hang,raise,stale",
-    at: Annotated[int, typer.Option(min=1, help="Activation or write in which it goes wrong.")] = 1,
-    workers: Annotated[int, typer.Option(min=1, help="Runs at a time.")] = 1,
-    timeout: Annotated[
-        float | None,
-        typer.Option(min=0.0, help="Limit of a run on the cell's clock, in seconds."),
-    ] = None,
-    wall_limit: Annotated[
-        float, typer.Option(min=1.0, help="Limit of a run on the machine's clock, in seconds.")
-    ] = 600.0,
-    assignments: Annotated[
-        list[str] | None,
-        typer.Option("--set", metavar="KEY=VALUE", help="Set an input or a part of the scenario."),
+@campaign.command(_RUN)
+def run_campaign(
+    file: Annotated[Path, typer.Argument(help="YAML document of the campaign.")],
+    workers: Annotated[int, typer.Option(min=0, help="Runs at a time; one a core by default.")] = 0,
+    scheduler: Annotated[
+        str | None,
+        typer.Option(metavar="ADDRESS", help="Run on that Dask cluster: tcp://HOST:8786."),
     ] = None,
     out: Annotated[
         Path | None,
-        typer.Option(
-            "--out", file_okay=False, help="Folder; runs/TIME_faults_MISSION_SEED by default."
-        ),
+        typer.Option("--out", file_okay=False, help="Folder; runs/TIME_NAME by default."),
     ] = None,
     resume: Annotated[
         bool, typer.Option("--resume", help="Go on with the campaign in that folder.")
     ] = False,
-    fail_under: Annotated[
-        float | None,
-        typer.Option(
-            metavar="PERCENT", min=0.0, max=100.0, help="Exit with 1 when fewer are survived."
-        ),
-    ] = None,
-    as_json: Annotated[bool, typer.Option("--json", help="Print JSON on stdout.")] = False,
+    again: Annotated[
+        bool, typer.Option("--again", help="With --resume: repeat runs whose process was lost.")
+    ] = False,
+    listed: Annotated[
+        bool, typer.Option("--list", help="Show the runs that are wanted, and run nothing.")
+    ] = False,
+    as_json: JsonOption = False,
 ) -> None:
-    """Try every single fault in simulation: each skill with each kind, each key stale.
+    """Run the campaign that a document describes; the word run may be left out.
 
-    Exit codes: 0 every run ended in order, 1 some did not, 2 bad input, 4 stopped by the user.
+    Exit codes: 0 every run came to an end, 1 some processes were lost, 2 bad input, 4 stopped.
     """
-    plan = CampaignPlan(
-        mission=mission,
-        seed=seed,
-        timeout_s=timeout,
-        assignments=tuple(assignments or ()),
-    )
-    wanted = Wanted(parse_kinds(kinds), at, only)
-    _check(mission)
-    folder = _folder(plan, out, resume=resume)
-    try:
-        with _terminated_like_interrupted():
-            baseline, runs = _runs(Campaign(plan, folder, Processes(workers, wall_limit)), wanted)
-    except KeyboardInterrupt:
-        chatter().print(f"stopped; go on with --resume --out {folder.folder}")
-        raise typer.Exit(MissionOutcome.ABORTED.exit_code) from None
-    if as_json:
-        typer.echo(_document(plan, folder, baseline, runs))
+    from executive.app.campaigns.campaign import Campaign, Where
+    from executive.app.campaigns.document import read_campaign
+
+    document, _ = read_campaign(_document_file(file))
+    folder = _folder(document.campaign, out, resume=resume)
+    one = Campaign(document, file.parent, folder)
+    if listed:
+        _list(one)
+        return
+    if resume:
+        one.resume()
     else:
-        _print(folder, baseline, runs)
-    wrong = any(run.verdict == "wrong" for run in runs)
-    low = fail_under is not None and survived_percent(runs) < fail_under
-    raise typer.Exit(1 if wrong or low else 0)
-
-
-@contextmanager
-def _terminated_like_interrupted() -> Iterator[None]:
-    """End the runs that are under way when this process is told to end, too."""
-    # SIGINT too: a shell lets its background processes ignore it.
-    numbers = (signal.SIGINT, signal.SIGTERM)
-    before = [signal.signal(number, signal.default_int_handler) for number in numbers]
+        one.begin()
+    where = Where(workers or _cores(), scheduler)
     try:
-        yield
-    finally:
-        for number, handler in zip(numbers, before, strict=True):
-            signal.signal(number, handler)
+        with terminated_like_interrupted():
+            _run(one, where, again=again)
+    except KeyboardInterrupt:
+        chatter().print(f"stopped; go on with --resume --out {folder}")
+        raise typer.Exit(MissionOutcome.ABORTED.exit_code) from None
+    found = list(one.folder.records())
+    _write_table(folder, found)
+    _show(folder, found, as_json=as_json)
+    from executive.app.campaigns.jobs import LOST
+
+    raise typer.Exit(1 if any(record.outcome in LOST for record in found) else 0)
 
 
-def _check(mission: str) -> None:
-    """Find every fault of the documents before a folder is made."""
-    from executive.app.catalogue import port_types, skills
+@campaign.command()
+def show(
+    folder: Annotated[Path, typer.Argument(help="Folder of a campaign.")],
+    as_json: JsonOption = False,
+) -> None:
+    """Show what a campaign has come to so far, and bring its table up to date."""
+    found = _records(folder)
+    _write_table(folder, found)
+    _show(folder, found, as_json=as_json)
 
-    load_mission(mission, skills=skills(), types=port_types())
+
+@campaign.command()
+def compare(
+    a: Annotated[str, typer.Argument(help="Folder of a campaign, or FOLDER:VARIANT.")],
+    b: Annotated[str, typer.Argument(help="Folder of another one, or FOLDER:VARIANT.")],
+    as_json: JsonOption = False,
+) -> None:
+    """Say what differs between two campaigns, or two variants, beyond noise.
+
+    Exit codes: 0 nothing does, 1 something does, 2 bad input.
+    """
+    from dataclasses import asdict
+
+    from executive.app.campaigns.comparing import compare as compared
+    from executive.cli.campaign_text import comparison_lines
+
+    found = compared(_side(a), _side(b))
+    if as_json:
+        typer.echo(json.dumps(asdict(found)))
+    else:
+        for line in comparison_lines(found, a, b):
+            results().print(line, soft_wrap=True)
+    raise typer.Exit(1 if any(one.beyond_noise for one in found.differences) else 0)
 
 
-def _folder(plan: CampaignPlan, out: Path | None, *, resume: bool) -> CampaignFolder:
+def _document_file(file: Path) -> Path:
+    if not file.is_file():
+        raise InputError(
+            f"{file}: no such file; expected the document of a campaign, or one of "
+            "run, show, compare, faults"
+        )
+    return file
+
+
+def _folder(name: str, out: Path | None, *, resume: bool) -> Path:
     if resume and out is None:
         raise InputError("--resume: which campaign? try --out FOLDER")
-    name = Path(plan.mission).stem
-    stamp = datetime.now(UTC).strftime("%Y%m%dT%H%M%SZ")
-    folder = CampaignFolder(out or Path("runs") / f"{stamp}_faults_{name}_{plan.seed}")
-    if resume:
-        folder.resume(plan)
-    else:
-        folder.begin(plan)
-    return folder
+    return out or Path("runs") / f"{datetime.now(UTC).strftime('%Y%m%dT%H%M%SZ')}_{name}"
 
 
-def _runs(campaign: Campaign, wanted: Wanted) -> tuple[PastRun, list[FaultRun]]:
-    """Run what is left of a campaign; return all of it in the order of the tree."""
-    console = chatter()
-    with console.status("running without a fault"):
-        baseline = campaign.baseline()
-    tried, names = variants(seen_in(baseline.index), wanted), _names(baseline)
-    done = sum(one.fault in campaign.folder.finished() for one in tried)
-    for place, run in enumerate(campaign.runs(tried, baseline), start=done + 1):
-        print_progress(console, run, place, len(tried), names)
-    found = campaign.folder.results()
-    return baseline, [found[one.fault] for one in tried]
+def _cores() -> int:
+    import os
+
+    return len(os.sched_getaffinity(0))
 
 
-def _names(run: PastRun) -> dict[str, str]:
-    return {node.path: run.names.short(number) for number, node in enumerate(run.index.nodes)}
+def _list(one: "Campaign") -> None:
+    from executive.app.campaigns.variants import variants
+
+    console, seeds = results(), one.document.all_seeds
+    for variant in variants(one.document):
+        console.print(f"v{variant.number:03d}  {variant}", soft_wrap=True)
+    console.print(f"{one.count} runs: each with {len(seeds)} seeds, {seeds[0]} to {seeds[-1]}")
 
 
-def _print(folder: CampaignFolder, baseline: PastRun, runs: list[FaultRun]) -> None:
-    console, result = results(), baseline.recording.result
-    assert result is not None
-    usual = result.report
-    console.print(f"without a fault: {usual.outcome} after {usual.sim_s:.1f} s", soft_wrap=True)
-    for line in table(runs, _names(baseline)):
+def _run(one: "Campaign", where: Any, *, again: bool) -> None:
+    from executive.cli.campaign_text import Progress
+
+    done = len(one.folder.finished(again=again))
+    with Progress(chatter(), one.count, done) as progress:
+        for record in one.run(where, again=again):
+            progress.tell(record)
+
+
+def _records(folder: Path) -> "list[RunRecord]":
+    from executive.app.campaigns.folder import CampaignFolder
+
+    kept = CampaignFolder(folder)
+    kept.plan()
+    return list(kept.records())
+
+
+def _side(named: str) -> "list[RunRecord]":
+    """Return the runs of a campaign, or of one variant of it."""
+    name, colon, number = named.rpartition(":")
+    if not colon or Path(named).exists():
+        return _some(named, _records(Path(named)))
+    wanted = number.removeprefix("v")
+    if not wanted.isdigit():
+        raise InputError(f"{named}: got variant {number!r}; expected a number such as {name}:1")
+    return _some(named, [one for one in _records(Path(name)) if one.variant == int(wanted)])
+
+
+def _some(named: str, found: "list[RunRecord]") -> "list[RunRecord]":
+    if not found:
+        raise InputError(f"{named}: no run has ended there; nothing can be compared")
+    return found
+
+
+def _write_table(folder: Path, found: "list[RunRecord]") -> None:
+    from executive.app.campaigns.table import TABLE, write_table
+
+    if found:
+        write_table(found, folder / TABLE)
+
+
+def _show(folder: Path, found: "list[RunRecord]", *, as_json: bool) -> None:
+    from executive.cli.campaign_text import summary_document, summary_lines
+
+    if as_json:
+        typer.echo(json.dumps({"folder": str(folder), **summary_document(found)}))
+        return
+    console = results()
+    for line in summary_lines(found, folder):
         console.print(line, soft_wrap=True)
-    console.print(summary(runs), soft_wrap=True)
-    console.print(f"recordings: {folder.folder}", soft_wrap=True)
-
-
-def _document(
-    plan: CampaignPlan, folder: CampaignFolder, baseline: PastRun, runs: list[FaultRun]
-) -> str:
-    result = baseline.recording.result
-    assert result is not None
-    verdicts = [run.verdict for run in runs]
-    return json.dumps(
-        {
-            "plan": plan.model_dump(mode="json"),
-            "folder": str(folder.folder),
-            "baseline": result.report.model_dump(mode="json"),
-            "runs": [run.model_dump(mode="json") for run in runs],
-            "survived": verdicts.count("survived"),
-            "ended": verdicts.count("ended"),
-            "wrong": verdicts.count("wrong"),
-            "not_reached": verdicts.count("not reached"),
-            "survived_percent": survived_percent(runs),
-        }
-    )
