@@ -9,6 +9,7 @@ from benchmarks.harness import Benchmark, document
 from benchmarks.report import write_page
 
 BENCHMARKS = {
+    "affinity": ("benchmarks.affinity", "what language models know of shelves, beside a taxonomy"),
     "motion": ("benchmarks.motion", "kinematics, collisions, plans and limits of the arms"),
     "resuming": ("benchmarks.resuming", "untangling missions that are killed and gone on with"),
     "beliefs": ("benchmarks.beliefs", "P(knotted), P(knot) and what to ask next, without images"),
