@@ -74,7 +74,6 @@ class Cluster:
                 n_workers=1,
                 threads_per_worker=workers,
                 processes=False,
-                host=_LOOPBACK,
                 dashboard_address=f"{_LOOPBACK}:0",
                 worker_dashboard_address=f"{_LOOPBACK}:0",
                 memory_limit=0,

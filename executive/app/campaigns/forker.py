@@ -22,6 +22,13 @@ from executive.core.errors import InputError
 from executive.engine.faults.processes import GRACE_S
 from executive.engine.faults.tether import tie_to_stdin
 from executive.engine.loading.loader import Mission
+from executive.engine.recording.messages import (
+    MissionHeader,
+    ResultMessage,
+    TickMessage,
+    schema_of,
+)
+from executive.engine.running.mission_run import versions
 
 POLL_S = 0.1
 _STDIN = 0
@@ -179,6 +186,13 @@ def _loaded(assignment: Assignment) -> Mission:
     return mission
 
 
+def _prepare_recordings() -> None:
+    """Make what every recording needs, and what takes longer than a short run to make."""
+    versions()
+    for kind in (MissionHeader, TickMessage, ResultMessage):
+        schema_of(kind)
+
+
 def main() -> None:
     """Serve until standard input ends."""
     # Answers go where standard output was; what libraries print goes to standard error.
@@ -187,6 +201,7 @@ def main() -> None:
     lines = os.fdopen(os.dup(_STDIN), "r", encoding="utf-8")
     assignment = Assignment.model_validate_json(lines.readline())
     try:
+        _prepare_recordings()
         forker = Forker(_loaded(assignment), assignment, answers)
     except (InputError, OSError) as error:
         sys.exit(str(error))

@@ -5,6 +5,7 @@ Times are those of the cell's clock, so that two runs with one seed differ only 
 """
 
 from dataclasses import dataclass
+from functools import cache
 from typing import Literal
 
 from pydantic import BaseModel, ConfigDict, Field, JsonValue
@@ -28,6 +29,12 @@ RESULT_TOPIC = "/result"
 
 class _Message(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid")
+
+
+@cache
+def schema_of(kind: type[BaseModel]) -> dict[str, JsonValue]:
+    """Return the JSON schema of a message, made once: that takes longer than a short run."""
+    return kind.model_json_schema()
 
 
 class SourceFile(_Message):

@@ -7,6 +7,7 @@ is killed loses the tick in progress and nothing else.
 import json
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 from types import TracebackType
 from typing import Self
@@ -24,6 +25,7 @@ from executive.engine.recording.messages import (
     MissionHeader,
     ResultMessage,
     TickMessage,
+    schema_of,
 )
 from executive.engine.recording.parts import Item, Parts
 from executive.engine.recording.reader import Recording
@@ -89,9 +91,8 @@ class RecordingWriter:
             if self._parts.go_on():
                 self._ticks.keyframe_due = True
             data = self._ticks.encode(tick)
-            self._add(
-                TICKS_TOPIC, TickMessage.__name__, TickMessage.model_json_schema, data, tick.number
-            )
+            define = partial(schema_of, TickMessage)
+            self._add(TICKS_TOPIC, TickMessage.__name__, define, data, tick.number)
             self._parts.flush()
 
     def on_streams(self, messages: Sequence[StreamMessage]) -> None:
@@ -174,7 +175,7 @@ class RecordingWriter:
         kind = type(message)
         data = message.model_dump_json(exclude_defaults=True).encode()
         stamp = _nanoseconds(self._time_s)
-        return Item(topic, kind.__name__, kind.model_json_schema, data, stamp, number)
+        return Item(topic, kind.__name__, partial(schema_of, kind), data, stamp, number)
 
     @contextmanager
     def _guarded(self) -> Iterator[None]:

@@ -7,6 +7,7 @@ import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from datetime import UTC, datetime
+from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
@@ -211,6 +212,7 @@ def default_recording(mission: str, seed: int) -> Path:
     return next(path for path in paths if not path.exists())
 
 
+@cache
 def versions() -> dict[str, str]:
     """Return the versions of Python and of the packages that a run depends on."""
     found = {"python": platform.python_version(), "platform": sys.platform}
