@@ -84,7 +84,11 @@ def open_cell(document: CellDocument, scenario: Mapping[str, object], seed: int)
     Raises:
         InputError: Unknown world, or a configuration or scenario that the world refuses.
     """
-    worlds = {"table_cell": _open_table_cell, "dry": _open_dry_cell}
+    worlds = {
+        "table_cell": _open_table_cell,
+        "shelf_cell": _open_shelf_cell,
+        "dry": _open_dry_cell,
+    }
     if document.world not in worlds:
         raise InputError(f"unknown world {document.world!r}; {closest(document.world, [*worlds])}")
     return worlds[document.world](document, scenario, seed)
@@ -102,6 +106,14 @@ def _open_table_cell(document: CellDocument, scenario: Mapping[str, object], see
         **workers(document.work),
     }
     return _RestorableEquippedCell(world, services)
+
+
+def _open_shelf_cell(document: CellDocument, scenario: Mapping[str, object], seed: int) -> Cell:
+    from simulation.shelf_cell.cell import ShelfCell
+
+    world = ShelfCell(document.config, scenario, seed)
+    services = {"rng": np.random.default_rng(seed), **workers(document.work)}
+    return _EquippedCell(world, services)
 
 
 def workers(work: Literal["inline", "beside"]) -> dict[str, Worker]:
