@@ -24,6 +24,8 @@ _BOARD_GROUP, _BOX_GROUP, _ARM_GROUP = 1, 2, 4
 _BOARD_FRICTION, _TOOL_FRICTION, _ARM_FRICTION = 0.35, 0.25, 0.5
 # Contacts resolve more finely than by default: stacks and wedged boxes must not creep.
 _SOLVER_ITERATIONS = 100
+# Faces rub over their whole area, contact points do not: without it boxes at rest turn slowly.
+_SPINNING_FRICTION_M = 0.002
 _STILL_M_S, _STILL_RAD_S = 1e-3, 1e-2
 
 
@@ -190,6 +192,7 @@ class ShelfPhysics:
 
     def attach(self, name: str) -> int:
         """Fix a box to the suction frame as it is now; returns what `release` takes."""
+        self._wake(name)
         tip = self.link_pose(SUCTION_FRAME)
         position, quat = self._call("getBasePositionAndOrientation", self._bodies[name])
         inverse = self._bullet.invertTransform(position, quat)
@@ -217,9 +220,10 @@ class ShelfPhysics:
         force_n, torque_nm = state @ np.reshape(self._bullet.getMatrixFromQuaternion(quat), (3, 3))
         return force_n, torque_nm
 
-    def release(self, constraint: int) -> None:
+    def release(self, name: str, constraint: int) -> None:
         """Let go of an attached box."""
         self._call("removeConstraint", constraint)
+        self._wake(name)
 
     def close(self) -> None:
         """Shut the physics server; nothing else may be called afterwards."""
@@ -227,6 +231,10 @@ class ShelfPhysics:
 
     def _call(self, name: str, *args: Any, **named: Any) -> Any:
         return getattr(self._bullet, name)(*args, physicsClientId=self._server, **named)
+
+    def _wake(self, name: str) -> None:
+        state = self._bullet.ACTIVATION_STATE_WAKE_UP
+        self._call("changeDynamics", self._bodies[name], -1, activationState=state)
 
     def _add_board(self, board: StaticBox) -> int:
         body = self._add_body(board.size_m, 0.0, board.centre_m, _BOARD_GROUP)
@@ -236,7 +244,14 @@ class ShelfPhysics:
     def _add_box(self, box: HeavyBox) -> int:
         centre_m = (box.box.x_m, box.box.y_m, 0.5 * box.box.size_m[2])
         body = self._add_body(box.box.size_m, box.mass_kg, centre_m, _BOX_GROUP)
-        self._call("changeDynamics", body, -1, lateralFriction=box.friction**0.5)
+        self._call(
+            "changeDynamics",
+            body,
+            -1,
+            lateralFriction=box.friction**0.5,
+            spinningFriction=_SPINNING_FRICTION_M,
+            activationState=self._bullet.ACTIVATION_STATE_ENABLE_SLEEPING,
+        )
         return body
 
     def _add_body(

@@ -121,7 +121,7 @@ class Cups:
 
     def _let_go(self) -> None:
         if self._constraint is not None:
-            self._physics.release(self._constraint)
+            self._physics.release(self.held, self._constraint)
         self._constraint, self.held, self._overload_s = None, "", 0.0
 
     def _too_much(self) -> bool:
