@@ -62,9 +62,7 @@ class PoseGoal:
 
 
 Goal = TcpGoal | PoseGoal
-Cause = Literal[
-    "reach", "joint_limit", "collision", "onward", "search", "speed", "timing", "moving"
-]
+Cause = Literal["reach", "joint_limit", "collision", "onward", "search", "timing", "moving"]
 
 
 @dataclass(frozen=True, slots=True)

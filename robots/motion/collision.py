@@ -6,7 +6,7 @@ faster than testing every pair, and unlike the dynamic tree arrays it has missed
 before the first plan.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import coal
@@ -107,16 +107,23 @@ class CollisionModel:
 
     def colliding_pair(self, positions_rad: Floats) -> tuple[str, str] | None:
         """Return the names of two bodies that collide, or None; pairwise, hence slower."""
+        return next(iter(self._colliding(positions_rad, stop_at_first=True)), None)
+
+    def colliding_pairs(self, positions_rad: Floats) -> set[tuple[str, str]]:
+        """Return the names of all pairs of bodies that collide."""
+        return set(self._colliding(positions_rad, stop_at_first=False))
+
+    def _colliding(self, positions_rad: Floats, stop_at_first: bool) -> Iterator[tuple[str, str]]:
         self.robot.write_arms(self._q, positions_rad)
-        pin.computeCollisions(
-            self.robot.model, self._data, self._geometry, self._geometry_data, self._q, False
+        pin.updateGeometryPlacements(
+            self.robot.model, self._data, self._geometry, self._geometry_data, self._q
         )
+        pin.computeCollisions(self._geometry, self._geometry_data, stop_at_first)
         for pair, result in zip(
             self._geometry.collisionPairs, self._geometry_data.collisionResults, strict=True
         ):
             if result.isCollision():
-                return self._body_names[pair.first], self._body_names[pair.second]
-        return None
+                yield self._body_names[pair.first], self._body_names[pair.second]
 
     def distance_m(self, pair: tuple[str, str], positions_rad: Floats) -> float:
         """Return how far apart two bodies are at a configuration [m]; below 0 they overlap.

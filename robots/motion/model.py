@@ -6,6 +6,8 @@ world frame.
 """
 
 from collections.abc import Mapping
+from math import pi
+from xml.etree import ElementTree as ET
 
 import numpy as np
 import pinocchio as pin
@@ -89,13 +91,11 @@ class RobotModel:
         """Load a URDF and put its root where the placement says.
 
         Raises:
-            InputError: A joint or frame that the specification names is not in the URDF.
+            InputError: The URDF cannot be used, or a joint or frame that the specification
+                names is not in it.
         """
         self.spec = spec
-        self.model = pin.buildModelFromUrdf(str(spec.urdf))
-        self.geometry = pin.buildGeomFromUrdf(
-            self.model, str(spec.urdf), pin.GeometryType.COLLISION
-        )
+        self.model, self.geometry = _loaded(spec)
         self.arms: tuple[str, ...] = tuple(spec.arms)
         _demand_names(spec, self.model)
         self._stand(placement)
@@ -173,6 +173,36 @@ class RobotModel:
         if spec.levers_m is not None:
             return np.array(spec.levers_m)
         return levers_m(self.model, self.geometry, spec.joints)
+
+
+def _loaded(spec: RobotSpec) -> tuple[pin.Model, pin.GeometryModel]:
+    """Parse a URDF; joints that turn without end are given one turn either way.
+
+    A configuration then has one number a joint.
+    """
+    root = ET.parse(spec.urdf).getroot()
+    for joint in root.findall("joint[@type='continuous']"):
+        joint.set("type", "revolute")
+        limit = joint.find("limit")
+        limit = ET.SubElement(joint, "limit") if limit is None else limit
+        limit.set("lower", str(-2.0 * pi))
+        limit.set("upper", str(2.0 * pi))
+    text = ET.tostring(root, encoding="unicode")
+    folders = [str(spec.urdf.parent), str(spec.urdf.parent.parent)]
+    try:
+        model = pin.buildModelFromXML(text)
+        geometry = pin.buildGeomFromUrdfString(
+            model, text, pin.GeometryType.COLLISION, package_dirs=folders
+        )
+    except (ValueError, RuntimeError) as error:
+        raise InputError(f"{spec.urdf}: Pinocchio cannot load it: {error}") from None
+    if model.nq != model.nv or geometry.ngeoms == 0:
+        what = "no collision shapes" if geometry.ngeoms == 0 else "a joint of several numbers"
+        raise InputError(
+            f"{spec.urdf}: got {what}; expected shapes to check collisions with, and joints "
+            "that turn or slide"
+        )
+    return model, geometry
 
 
 def _demand_names(spec: RobotSpec, model: pin.Model) -> None:
