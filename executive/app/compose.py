@@ -6,6 +6,7 @@ The heavy imports of the project meet here and nowhere else.
 import importlib.util
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
+from functools import partial
 from typing import Literal, Protocol
 
 import numpy as np
@@ -87,6 +88,7 @@ def open_cell(document: CellDocument, scenario: Mapping[str, object], seed: int)
     worlds = {
         "table_cell": _open_table_cell,
         "shelf_cell": _open_shelf_cell,
+        "shelf_kinematic": _open_kinematic_shelf,
         "dry": _open_dry_cell,
     }
     if document.world not in worlds:
@@ -95,13 +97,16 @@ def open_cell(document: CellDocument, scenario: Mapping[str, object], seed: int)
 
 
 def _open_table_cell(document: CellDocument, scenario: Mapping[str, object], seed: int) -> Cell:
+    from executive.app.visions import selectable_vision
     from robots.dual_arm import PlannedDualArm
     from simulation.table_cell import TableCell
 
     world = TableCell(document.config, scenario, seed)
     services = {
         "arms": PlannedDualArm(world.driver, seed=seed),
-        "vision": cable_vision(ROWS_OF_ARMS_AT_HOME, "classic"),
+        "vision": selectable_vision(
+            partial(cable_vision, ROWS_OF_ARMS_AT_HOME), ROWS_OF_ARMS_AT_HOME
+        ),
         "rng": np.random.default_rng(seed),
         **workers(document.work),
     }
@@ -114,6 +119,23 @@ def _open_shelf_cell(document: CellDocument, scenario: Mapping[str, object], see
     world = ShelfCell(document.config, scenario, seed)
     services = {"rng": np.random.default_rng(seed), **workers(document.work)}
     return _EquippedCell(world, services)
+
+
+def _open_kinematic_shelf(
+    document: CellDocument, scenario: Mapping[str, object], seed: int
+) -> Cell:
+    from executive.app.shelf_services import shelf_services
+    from simulation.shelf.cell import KinematicShelfCell
+
+    world = KinematicShelfCell(document.config, scenario, seed)
+    told = world.oracle_detector if world.settings.detector == "oracle" else None
+    affinity = world.settings.affinity
+    services = {
+        **shelf_services(world.stock, world.tool.shape, world.search_camera, told, affinity),
+        "rng": np.random.default_rng(seed),
+        **workers(document.work),
+    }
+    return _RestorableEquippedCell(world, services)
 
 
 def workers(work: Literal["inline", "beside"]) -> dict[str, Worker]:

@@ -31,3 +31,30 @@ def front_camera(
         (0.5 * (width_px - 1), 0.5 * (height_px - 1)),
         T_world_camera,
     )
+
+
+def viewpoint_cameras(
+    shelf: Shelf, middle: CameraModel, aside_share: float = 0.25
+) -> dict[str, CameraModel]:
+    """Return the cameras of a shelf cell by viewpoint: in the middle, and aside, turned inwards.
+
+    Args:
+        shelf: The shelf.
+        middle: The camera before its middle.
+        aside_share: How far the others are from it, as a share of the shelf's width.
+    """
+    cameras = {"centre": middle}
+    distance_m = 0.5 * shelf.depth_m - float(middle.T_world_camera[1, 3])
+    for name, sign in (("left", -1.0), ("right", 1.0)):
+        aside_m = sign * aside_share * shelf.width_m
+        angle_rad = np.arctan2(aside_m, distance_m)
+        turn = np.eye(4)
+        cosine, sine = np.cos(angle_rad), np.sin(angle_rad)
+        turn[:2, :2] = [[cosine, -sine], [sine, cosine]]
+        T_world_camera = middle.T_world_camera.copy()
+        T_world_camera[:3, :3] = turn[:3, :3] @ T_world_camera[:3, :3]
+        T_world_camera[0, 3] += aside_m
+        cameras[name] = CameraModel(
+            middle.width_px, middle.height_px, middle.focal_px, middle.centre_px, T_world_camera
+        )
+    return cameras

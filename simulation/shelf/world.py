@@ -1,59 +1,19 @@
-"""A shelf without physics: it is looked into, objects are pushed and moved, nothing falls.
-
-The assumptions are the thesis's (section 5.2): an action moves one object, pushes stop at
-contact, and nothing topples. A push that meets the hidden target stops there like any other.
-"""
+"""A shelf without physics: it is looked into, objects are pushed and moved, nothing falls."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from enum import StrEnum
 
 import numpy as np
 
 from perception.camera import CameraModel, DepthImage
 from perception.shelf.casting import BoxCaster
-from perception.shelf.planning.moves import Move, Place, Push
-from perception.shelf.planning.room import (
-    Reach,
-    blade_fits,
-    fits_at,
-    footprints,
-    push_room_m,
-    way_out,
-)
+from perception.shelf.planning.moves import Move, Push
+from perception.shelf.planning.room import Reach
 from perception.shelf.types import NOTHING, Box, Floats, Segments, ShelfView
 from simulation.shelf.cameras import front_camera
+from simulation.shelf.contents import MoveFailure, MoveResult, ShelfContents
 from simulation.shelf.rendering import ShelfRenderer
 from simulation.shelf.scenes import Scene
-
-# A push that moves an object by less has moved nothing.
-LEAST_SHIFT_M = 0.001
-
-
-class MoveFailure(StrEnum):
-    """Why an action did nothing."""
-
-    NOT_SEEN = "shelf.not_seen"
-    NO_SUCTION = "suction.no_cup"
-    OBSTRUCTED = "suction.obstructed"
-    NO_PLACE = "suction.no_place"
-    NO_BLADE = "push.no_room_for_blade"
-    NO_ROOM = "push.blocked"
-
-
-@dataclass(frozen=True, slots=True)
-class MoveResult:
-    """What came of an action.
-
-    Attributes:
-        failure: Why nothing moved; None when something did.
-        moved_m: How far the object went in a straight line.
-        short_m: By how much a push stopped before it had gone as far as was asked.
-    """
-
-    failure: MoveFailure | None
-    moved_m: float = 0.0
-    short_m: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,15 +50,14 @@ class ShelfWorld:
             noise: What the camera adds to depth; None for nothing.
         """
         self.camera = camera or front_camera(scene.shelf)
-        self._scene, self._rng = scene, rng
-        self._reach, self._noise = reach or Reach(), noise or DepthNoise()
+        self._rng, self._noise = rng, noise or DepthNoise()
         self._renderer = ShelfRenderer(BoxCaster(self.camera), scene.shelf)
-        self._boxes = dict(zip(scene.names, scene.boxes, strict=True))
+        self._contents = ShelfContents(scene, reach or Reach())
 
     @property
     def boxes(self) -> Mapping[str, Box]:
         """Where everything stands now; truth, for scoring alone."""
-        return self._boxes
+        return self._contents.boxes
 
     def look(self) -> ShelfView:
         """Take a view; detection is perfect, as in the thesis's simulations (section 7.4)."""
@@ -107,50 +66,26 @@ class ShelfWorld:
 
     def visible_share(self, name: str) -> float:
         """Return how much of an object's silhouette is seen, in [0, 1]; truth, for scoring."""
-        shares = self._renderer.visible_shares(list(self._boxes.values()))
-        return float(shares[list(self._boxes).index(name)])
+        shares = self._renderer.visible_shares(list(self.boxes.values()))
+        return float(shares[list(self.boxes).index(name)])
 
     def act(self, move: Move) -> MoveResult:
         """Do one action; where it fails, nothing moves."""
         if move.label not in self._shown()[2]:
             return MoveResult(MoveFailure.NOT_SEEN)
-        others = footprints([box for name, box in self._boxes.items() if name != move.label])
         if isinstance(move, Push):
-            return self._push(move, others)
-        return self._place(move, others)
+            return self._contents.push(move.label, move.shift_m)
+        return self._contents.place(move.label, move.x_m, move.y_m)
 
     def _shown(self) -> tuple[Floats, Segments, tuple[str, ...]]:
         """Return depth, segments and labels of what is in view."""
-        names = list(self._boxes)
-        depth_m, segments = self._renderer.render(list(self._boxes.values()))
+        names = list(self.boxes)
+        depth_m, segments = self._renderer.render(list(self.boxes.values()))
         seen = np.unique(segments[segments != NOTHING])
         # Numbers of hidden objects must not show through; NOTHING, -1, finds the last entry.
         numbers = np.full(len(names) + 1, NOTHING, dtype=np.int16)
         numbers[seen] = np.arange(len(seen))
         return depth_m, numbers[segments], tuple(names[index] for index in seen)
-
-    def _push(self, move: Push, others: Floats) -> MoveResult:
-        box, shelf = self._boxes[move.label], self._scene.shelf
-        moved, sign = footprints([box])[0], 1 if move.shift_m > 0.0 else -1
-        if not blade_fits(moved, others, sign, shelf, self._reach):
-            return MoveResult(MoveFailure.NO_BLADE)
-        shift_m = min(abs(move.shift_m), push_room_m(moved, others, sign, shelf, self._reach))
-        if shift_m < LEAST_SHIFT_M:
-            return MoveResult(MoveFailure.NO_ROOM)
-        self._boxes[move.label] = box.at(box.x_m + sign * shift_m, box.y_m)
-        return MoveResult(None, shift_m, abs(move.shift_m) - shift_m)
-
-    def _place(self, move: Place, others: Floats) -> MoveResult:
-        box, shelf = self._boxes[move.label], self._scene.shelf
-        if not self._reach.suction:
-            return MoveResult(MoveFailure.NO_SUCTION)
-        if not way_out(footprints([box])[0], others):
-            return MoveResult(MoveFailure.OBSTRUCTED)
-        put = box.at(move.x_m, move.y_m)
-        if not fits_at(footprints([put]), others, shelf)[0]:
-            return MoveResult(MoveFailure.NO_PLACE)
-        self._boxes[move.label] = put
-        return MoveResult(None, float(np.hypot(put.x_m - box.x_m, put.y_m - box.y_m)))
 
     def _noisy(self, depth_m: Floats) -> DepthImage:
         if self._noise.spread_m > 0.0:

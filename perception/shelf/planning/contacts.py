@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from perception.shelf.planning.moves import Move, Place
+from perception.shelf.planning.moves import Move, Place, Push
 from perception.shelf.planning.room import footprints
 from perception.shelf.types import Box, Floats
 
@@ -29,23 +29,54 @@ class Contacts:
             box: The pushed object, afterwards.
             sign: +1 when it was pushed along x, -1 against it.
         """
-        own = footprints([box])[0]
-        side_m = own[2] if sign > 0 else own[0]
-        low_m, high_m = sorted((side_m, side_m + sign * THICK_M))
-        self._met.append(np.array([low_m, own[1], high_m, own[3]]))
+        self._met.append(contact_beside(box, sign))
 
     def blade_stopped(self, box: Box, sign: int) -> None:
         """The blade did not fit in at the side from which it was to push."""
-        self.push_stopped(box, -sign)
+        self._met.append(contact_beside(box, -sign))
 
     def way_blocked(self, box: Box) -> None:
         """Something stands in front of a box, which did not come out."""
-        low_x_m, front_m, high_x_m, _ = footprints([box])[0]
-        self._met.append(np.array([low_x_m, front_m - THICK_M, high_x_m, front_m]))
+        self._met.append(contact_before(box))
 
     def place_taken(self, box: Box) -> None:
         """Something stands where a box was to be put down, or in front of it."""
         self._met.append(footprints([box])[0])
+
+
+def contact_beside(box: Box, sign: int) -> Floats:
+    """Return the footprint of something that stands beside a box, shape (4,).
+
+    Args:
+        box: The box.
+        sign: +1 for the side along x, -1 for the one against it.
+    """
+    own = footprints([box])[0]
+    side_m = own[2] if sign > 0 else own[0]
+    low_m, high_m = sorted((side_m, side_m + sign * THICK_M))
+    return np.array([low_m, own[1], high_m, own[3]])
+
+
+def contact_before(box: Box) -> Floats:
+    """Return the footprint of something that stands in front of a box, shape (4,)."""
+    low_x_m, front_m, high_x_m, _ = footprints([box])[0]
+    return np.array([low_x_m, front_m - THICK_M, high_x_m, front_m])
+
+
+def contact_of(move: Move, box: Box, failure: str) -> Floats:
+    """Return the footprint of what an object's move has failed at, shape (4,).
+
+    Args:
+        move: The move.
+        box: The object.
+        failure: Code of its failure, such as `push.blocked`.
+    """
+    if isinstance(move, Push):
+        sign = push_sign(move)
+        return contact_beside(box, sign if failure == "push.blocked" else -sign)
+    if failure == "suction.no_place":
+        return footprints([box.at(move.x_m, move.y_m)])[0]
+    return contact_before(box)
 
 
 def push_sign(move: Move) -> int:

@@ -25,13 +25,8 @@ class FreeFloor:
             caster: Rays of the view's camera.
             own: Footprint of an object that is going to leave its place, shape (4,).
         """
-        x_m = np.arange(0.5 * CELL_M, shelf.width_m, CELL_M)
-        y_m = np.arange(0.5 * CELL_M, shelf.depth_m, CELL_M)
-        grid_x, grid_y = np.meshgrid(x_m, y_m, indexing="ij")
-        points_m = np.stack([grid_x, grid_y, np.full_like(grid_x, ABOVE_M)], axis=-1)
-        free = _seen_free(points_m.reshape(-1, 3), view, caster).reshape(grid_x.shape)
-        free |= (grid_x > own[0]) & (grid_x < own[2]) & (grid_y > own[1]) & (grid_y < own[3])
-        self._sums = np.zeros((len(x_m) + 1, len(y_m) + 1))
+        free = free_cells(view, shelf, caster) | covered_cells(own, shelf)
+        self._sums = np.zeros((free.shape[0] + 1, free.shape[1] + 1))
         self._sums[1:, 1:] = free.cumsum(axis=0).cumsum(axis=1)
 
     def holds(self, places: Floats) -> Bools:
@@ -44,6 +39,27 @@ class FreeFloor:
         free = free - sums[high[:, 0], low[:, 1]] + sums[low[:, 0], low[:, 1]]
         cells = (high - low).prod(axis=1)
         return np.asarray((free >= ENOUGH * cells) & (cells > 0))
+
+
+def free_cells(view: ShelfView, shelf: Shelf, caster: BoxCaster) -> Bools:
+    """Say which cells of the floor a view shows to be free, shape (nx, ny)."""
+    grid_x, grid_y = _grid(shelf)
+    points_m = np.stack([grid_x, grid_y, np.full_like(grid_x, ABOVE_M)], axis=-1)
+    return _seen_free(points_m.reshape(-1, 3), view, caster).reshape(grid_x.shape)
+
+
+def covered_cells(own: Floats, shelf: Shelf) -> Bools:
+    """Say which cells of the floor lie in a footprint, shape (4,)."""
+    grid_x, grid_y = _grid(shelf)
+    inside = (grid_x > own[0]) & (grid_x < own[2]) & (grid_y > own[1]) & (grid_y < own[3])
+    return np.asarray(inside)
+
+
+def _grid(shelf: Shelf) -> tuple[Floats, Floats]:
+    x_m = np.arange(0.5 * CELL_M, shelf.width_m, CELL_M)
+    y_m = np.arange(0.5 * CELL_M, shelf.depth_m, CELL_M)
+    grid_x, grid_y = np.meshgrid(x_m, y_m, indexing="ij")
+    return grid_x, grid_y
 
 
 def _seen_free(points_m: Floats, view: ShelfView, caster: BoxCaster) -> Bools:

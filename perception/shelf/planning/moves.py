@@ -32,3 +32,18 @@ class Place:
 
 
 Move = Push | Place
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """A sequence of moves.
+
+    Attributes:
+        moves: The moves; only the first is to be made before the next look.
+        shows: Probability that the first one shows the target.
+        expected_moves: How many moves are expected to be needed.
+    """
+
+    moves: tuple[Move, ...]
+    shows: float
+    expected_moves: float

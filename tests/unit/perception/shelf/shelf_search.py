@@ -16,9 +16,10 @@ from perception.shelf.planning.room import Reach
 from perception.shelf.semantic import column_semantics, floor_semantics
 from perception.shelf.sightings import sightings
 from perception.shelf.spatial import RunningMinimum, along_shelf, mask_occupancy
+from simulation.shelf.contents import MoveFailure
 from simulation.shelf.scenes import draw_scene
 from simulation.shelf.taxonomy import shipped_domain, taxonomy_affinity
-from simulation.shelf.world import MoveFailure, ShelfWorld
+from simulation.shelf.world import ShelfWorld
 
 # The thesis's rule: found when 1 % of the target shows (section 7.4).
 SHOWN = 0.01

@@ -8,9 +8,10 @@ from perception.shelf.casting import BoxCaster
 from perception.shelf.planning.moves import Place, Push
 from perception.shelf.planning.room import Reach, footprints, overlapping
 from perception.shelf.types import NOTHING
+from simulation.shelf.contents import MoveFailure
 from simulation.shelf.scenes import SceneRules, draw_scene
 from simulation.shelf.taxonomy import shipped_domain
-from simulation.shelf.world import DepthNoise, MoveFailure, ShelfWorld
+from simulation.shelf.world import DepthNoise, ShelfWorld
 
 
 def world_of(scene, **options):

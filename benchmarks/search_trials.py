@@ -1,0 +1,210 @@
+"""One search of one scene without a tree: look, estimate, choose, act, until the target shows.
+
+Detection is perfect, sizes of the stock are known, and the target counts as found when 1 % of it
+shows, as in the thesis's simulations (section 7.4). Nothing else of the scene is known to it.
+"""
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+from typing import TypeVar
+
+import numpy as np
+
+from perception.shelf.affinity import AffinityMatrix
+from perception.shelf.casting import BoxCaster
+from perception.shelf.hidden_poses import HiddenPoses, PoseBelief
+from perception.shelf.organisation import organisation_of
+from perception.shelf.original import OriginalScene
+from perception.shelf.planning.clearing import ReductionWithClearing
+from perception.shelf.planning.contacts import Contacts, push_sign
+from perception.shelf.planning.dar import DistributionAreaReduction
+from perception.shelf.planning.free_floor import CELL_M, free_cells
+from perception.shelf.planning.looking_ahead import ANYHOW, Situation, look_ahead
+from perception.shelf.planning.moves import Move, Place
+from perception.shelf.planning.room import Reach
+from perception.shelf.semantic import column_semantics, floor_semantics
+from perception.shelf.sightings import sightings
+from perception.shelf.spatial import RunningMinimum, along_shelf, mask_occupancy
+from perception.shelf.types import Box, Floats, ShelfView, Sighting
+from simulation.shelf.contents import MoveFailure, MoveResult
+from simulation.shelf.scenes import Scene
+from simulation.shelf.world import ShelfWorld
+
+# The thesis's rule: found when 1 % of the target shows (section 7.4).
+SHOWN = 0.01
+# A push that stops short by less has met what was seen.
+SHORT_M = 0.01
+
+T = TypeVar("T")
+Seen = tuple[Sighting, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Way:
+    """How to search.
+
+    Attributes:
+        spatial: `belief` (what any view has ruled out), `minimum` (over time, in the image) or
+            `masks` (the thesis's heuristic).
+        affinity: Semantics, or None for none.
+        product: Where semantics are multiplied in: per `pose`, or per `column` as in the thesis.
+        calibrated: Whether affinities are mixed by the estimated degree of organisation.
+        flat: Whether the distribution is reduced to one along the shelf.
+        policy: `dar` as published, `clearing` (the same, which clears its way) or `ahead` (ours).
+        reach: What the tool can do.
+    """
+
+    spatial: str = "belief"
+    affinity: AffinityMatrix | None = None
+    product: str = "column"
+    calibrated: bool = False
+    flat: bool = False
+    policy: str = "dar"
+    reach: Reach = Reach()  # noqa: RUF009 - frozen
+
+
+@dataclass(frozen=True, slots=True)
+class Trial:
+    """What came of a search.
+
+    Attributes:
+        success: Whether the target was found.
+        actions: Moves that were made.
+        stuck: Whether the search gave up before its time.
+        refusals: Moves that did not succeed.
+        belief_s: Time of each update of the belief.
+        choice_s: Time of each decision.
+    """
+
+    success: bool
+    actions: int
+    stuck: bool = False
+    refusals: int = 0
+    belief_s: tuple[float, ...] = ()
+    choice_s: tuple[float, ...] = ()
+
+
+class Searcher:
+    """Knows names, sizes of known objects and what it sees; nothing else about the scene."""
+
+    def __init__(self, scene: Scene, way: Way) -> None:
+        """Begin before the first look."""
+        self.way, self.target, self.shelf = way, scene.target, scene.shelf
+        self.world = ShelfWorld(scene, np.random.default_rng(0), reach=way.reach)
+        self.sizes = {name: box.size_m for name, box in zip(scene.names, scene.boxes, strict=True)}
+        self.caster = BoxCaster(self.world.camera)
+        self.poses = HiddenPoses(self.sizes[scene.target], self.shelf, self.caster)
+        self.belief, self.minimum = PoseBelief(self.poses), RunningMinimum()
+        self.original, self.contacts = OriginalScene(), Contacts()
+        self.been: list[tuple[str, Box]] = []
+        policy = ReductionWithClearing if way.policy == "clearing" else DistributionAreaReduction
+        self._reduction = policy(self.shelf, self.caster, way.reach)
+
+    def shows(self) -> bool:
+        """Ask the world whether the target counts as found."""
+        return self.world.visible_share(self.target) >= SHOWN
+
+    def look(self) -> tuple[ShelfView, Seen]:
+        """Look, and take in what is seen."""
+        view = self.world.look()
+        seen = sightings(view, self.shelf, self.sizes, self.caster)
+        self.original.update(seen)
+        self.belief.update(view, seen)
+        return view, seen
+
+    def choose(self, view: ShelfView, seen: Seen) -> Move | None:
+        """Choose the next move."""
+        if self.way.policy == "ahead":
+            return self._look_ahead(view, seen)
+        occupancy = self.occupancy(view, seen)
+        return self._reduction.choose(occupancy, view, seen, self.contacts.footprints)
+
+    def occupancy(self, view: ShelfView, seen: Seen) -> Floats:
+        """Return the occupancy distribution in the image."""
+        if self.way.affinity is None:
+            heat = self._spatial(view, seen)
+        elif self.way.product == "pose":
+            heat = self.belief.heat(self._semantics())
+        else:
+            heat = self._spatial(view, seen) * column_semantics(
+                view.camera, self.shelf, self.original.boxes, self._affinity(), self.target
+            )
+        return along_shelf(heat) if self.way.flat else heat
+
+    def act(self, move: Move, seen: Seen) -> MoveResult:
+        """Act, and remember what the move has met, as a robot could by touch."""
+        box = next(sighting.box for sighting in seen if sighting.label == move.label)
+        self.been.append((move.label, box))
+        result, sign = self.world.act(move), push_sign(move)
+        if result.failure is MoveFailure.NO_BLADE:
+            self.contacts.blade_stopped(box, sign)
+        elif result.failure is MoveFailure.OBSTRUCTED:
+            self.contacts.way_blocked(box)
+        elif isinstance(move, Place):
+            if result.failure is MoveFailure.NO_PLACE:
+                self.contacts.place_taken(box.at(move.x_m, move.y_m))
+        elif result.failure is MoveFailure.NO_ROOM or result.short_m > SHORT_M:
+            self.contacts.push_stopped(box.at(box.x_m + sign * result.moved_m, box.y_m), sign)
+        return result
+
+    def _look_ahead(self, view: ShelfView, seen: Seen) -> Move | None:
+        weights = self.belief.left.astype(np.float64)
+        if self.way.affinity is not None:
+            weights = weights * self._semantics()
+        plan = look_ahead(
+            Situation(
+                self.shelf, self.way.reach, view.camera,
+                tuple(sighting.label for sighting in seen),
+                tuple(sighting.box for sighting in seen),
+                np.full(len(seen), ANYHOW), self.contacts.footprints,
+                free_cells(view, self.shelf, self.caster), CELL_M,
+                self.sizes[self.target], self.poses.places_m, weights / weights.sum(), self.been,
+            )
+        )  # fmt: skip
+        return None if plan is None else plan.moves[0]
+
+    def _semantics(self) -> Floats:
+        places_m, boxes = self.poses.places_m, self.original.boxes
+        return floor_semantics(places_m, boxes, self._affinity(), self.target)
+
+    def _spatial(self, view: ShelfView, seen: Seen) -> Floats:
+        if self.way.spatial == "masks":
+            return self.minimum.update(mask_occupancy(seen, view.depth_m.shape))
+        if self.way.spatial == "minimum":
+            now = self.poses.feasible(view, seen).astype(float)
+            return self.minimum.update(self.poses.heat(now))
+        return self.belief.heat()
+
+    def _affinity(self) -> AffinityMatrix:
+        affinity = self.way.affinity
+        assert affinity is not None
+        if not self.way.calibrated:
+            return affinity
+        return affinity.mixed(organisation_of(self.original.boxes, affinity))
+
+
+def search(scene: Scene, way: Way) -> Trial:
+    """Search with at most 2 N actions (thesis, section 5.2)."""
+    searcher, refusals = Searcher(scene, way), 0
+    beliefs, choices = list[float](), list[float]()
+    limit = 2 * len(scene.names)
+    for actions in range(limit + 1):
+        if searcher.shows():
+            return Trial(True, actions, False, refusals, tuple(beliefs), tuple(choices))
+        if actions == limit:
+            break
+        view, seen = _timed(beliefs, searcher.look)
+        move = _timed(choices, partial(searcher.choose, view, seen))
+        if move is None:
+            return Trial(False, actions, True, refusals, tuple(beliefs), tuple(choices))
+        refusals += searcher.act(move, seen).failure is not None
+    return Trial(False, limit, False, refusals, tuple(beliefs), tuple(choices))
+
+
+def _timed(times: list[float], call: Callable[[], T]) -> T:
+    begun = time.perf_counter()
+    answer = call()
+    times.append(time.perf_counter() - begun)
+    return answer

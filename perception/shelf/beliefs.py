@@ -1,0 +1,100 @@
+"""What a search believes: which objects stand where, and where the target may be."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from perception.rgbd import ColourImage
+from perception.shelf.types import Bools, Box, Floats, Size
+
+# `SeenObject.number` of an object that the latest view does not show.
+OUT_OF_VIEW = -1
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SeenObject:
+    """One object that has been seen.
+
+    Attributes:
+        label: The name that it most likely has; `unknown 1` and so on where it has none.
+        certainty: Probability of that name.
+        probabilities: Of each name of the stock, from its best reading so far, shape (N,).
+        box: Where it stands, as far as its known size completes what is seen.
+        sure: The part of that box that is there whatever is hidden of it.
+        first: Where it stood when it was first seen.
+        number: Which segment of the latest detections shows it, or `OUT_OF_VIEW`.
+        share: How much of it the latest view shows, in [0, 1].
+    """
+
+    label: str
+    certainty: float
+    probabilities: Floats
+    box: Box
+    sure: Box
+    first: Box
+    number: int
+    share: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ShelfBelief:
+    """Everything that a search knows; each look and each move gives a new one.
+
+    Attributes:
+        target: Name of what is searched for.
+        target_m: Its size.
+        objects: What has been seen and is still there.
+        places_m: Cells of the floor in which the target's centre may be, shape (K, 2).
+        left: In which of them nothing seen speaks against it, shape (K,).
+        weights: Probability of each cell, shape (K,); adds up to 1.
+        organisation: Estimated share of objects that stand where they belong, in [0, 1].
+        floor: Which cells of the floor are known to be free, shape (nx, ny).
+        met: Footprints of what moves have met unseen, shape (M, 4).
+        been: Where objects were moved from, label and box, in order.
+        picture: The latest look with the belief drawn over it.
+        looks: Looks so far.
+    """
+
+    target: str
+    target_m: Size
+    objects: tuple[SeenObject, ...]
+    places_m: Floats
+    left: Bools
+    weights: Floats
+    organisation: float
+    floor: Bools
+    met: Floats
+    been: tuple[tuple[str, Box], ...]
+    picture: ColourImage
+    looks: int
+
+    @property
+    def found(self) -> SeenObject | None:
+        """The target, when it is in view or was seen to stand where it is."""
+        return next((one for one in self.objects if one.label == self.target), None)
+
+    @property
+    def boxes(self) -> Mapping[str, Box]:
+        """Where everything seen stands now."""
+        return {one.label: one.box for one in self.objects}
+
+    @property
+    def first(self) -> Mapping[str, Box]:
+        """Where everything seen stood at first, the target left out."""
+        return {one.label: one.first for one in self.objects if one.label != self.target}
+
+
+@dataclass(frozen=True, slots=True)
+class SearchClaim:
+    """What a mission says at its end.
+
+    Attributes:
+        target: Name of what was searched for.
+        found: Whether it says that it has seen it.
+        retrieved: Whether it says that it has taken it out.
+        certainty: Probability that what it has seen is the target.
+    """
+
+    target: str
+    found: bool
+    retrieved: bool
+    certainty: float

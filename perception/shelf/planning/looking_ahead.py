@@ -1,0 +1,282 @@
+"""Ours: the move that begins the sequence which is expected to show the target soonest.
+
+A beam search over sequences of moves on the belief over the target's poses. After each move the
+target is either seen, where its pose shows, or it is not, and then it stands in one of the poses
+that are still hidden. What a sequence costs is how often a move is expected to be needed, plus what
+is estimated to come after its end: for each hidden pose the least effort to uncover it.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from perception.camera import CameraModel
+from perception.shelf.planning.kernels import Ints, assess, consider, moves_from
+from perception.shelf.planning.moves import Move, Place, Plan, Push
+from perception.shelf.planning.outlook import outlook, restricted
+from perception.shelf.planning.room import Reach, footprints
+from perception.shelf.types import Bools, Box, Floats, Shelf, Size
+
+# Whether an object may be moved, and how.
+FIXED, ANYHOW, BY_PUSH, BY_CUP = 0, 1, 2, 3
+# An object this close to where it has been is back there.
+BACK_M = 0.015
+# Poses that are less likely together than this are not planned for.
+REST = 0.02
+# Of two moves that are as good, the shorter one: a metre costs this part of a move.
+HASTE_1_M = 1e-3
+# So many children of a branch compete for each place in the beam.
+SHORTLIST = 4
+
+
+@dataclass(frozen=True, slots=True)
+class Depth:
+    """How far to look ahead.
+
+    Attributes:
+        moves: Longest sequence.
+        beam: Sequences that are kept at each length.
+        steps_m: Distance of ends of pushes, and of places along x and y.
+        tail: Factor on the effort that is estimated to come after a sequence.
+        block_m: Poses in one block of the floor of this size are planned for as one.
+    """
+
+    moves: int = 3
+    beam: int = 5
+    steps_m: tuple[float, float, float] = (0.03, 0.05, 0.08)
+    tail: float = 1.5
+    block_m: float = 0.02
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Situation:
+    """What is known when a move is to be chosen.
+
+    Attributes:
+        shelf: The shelf.
+        reach: What the tool needs.
+        camera: From where the next look will be.
+        labels: Names of the objects.
+        boxes: Where they stand, in the order of `labels`.
+        movable: How each may be moved (`FIXED`, `ANYHOW`, `BY_PUSH`, `BY_CUP`), shape (B,).
+        met: Footprints of what is in the way unseen, shape (M, 4).
+        floor: Which cells of the floor are known to be free, as `free_floor` has them.
+        cell_m: Size of these cells.
+        target_m: Size of the target.
+        places_m: Where its centre may be, shape (K, 2).
+        weights: Probability of each place, shape (K,).
+        been: Where objects were moved from; none is brought back there.
+    """
+
+    shelf: Shelf
+    reach: Reach
+    camera: CameraModel
+    labels: tuple[str, ...]
+    boxes: tuple[Box, ...]
+    movable: Ints
+    met: Floats
+    floor: Bools
+    cell_m: float
+    target_m: Size
+    places_m: Floats
+    weights: Floats
+    been: Sequence[tuple[str, Box]] = ()
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Branch:
+    """A sequence of moves, and what is known where it is carried out and shows nothing."""
+
+    boxes: Floats
+    weights: Floats
+    unfound: float
+    spent: float
+    cost: float
+    moves: tuple[Move, ...] = ()
+    shows: tuple[float, ...] = ()
+
+
+def look_ahead(situation: Situation, depth: Depth | None = None) -> Plan | None:
+    """Return the best sequence of moves, or None when nothing that helps can be moved.
+
+    Args:
+        situation: What is known.
+        depth: How far to look; None for the defaults.
+    """
+    return _Search(situation, depth or Depth()).best()
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class KernelInputs:
+    """A situation as compiled code takes it; see `kernels.moves_from`."""
+
+    boxes: Floats
+    met: Floats
+    shelf_m: Floats
+    reach: Floats
+    steps_m: Floats
+    floor: Floats
+
+
+def kernel_inputs(situation: Situation, depth: Depth | None = None) -> KernelInputs:
+    """Return a situation as compiled code takes it."""
+    shelf, reach = situation.shelf, situation.reach
+    rows = [(*box.low_m[:2], *box.high_m[:2], box.size_m[2]) for box in situation.boxes]
+    floor = np.zeros(np.array(situation.floor.shape) + 1)
+    floor[1:, 1:] = situation.floor.cumsum(axis=0).cumsum(axis=1)
+    return KernelInputs(
+        boxes=np.array(rows, dtype=np.float64).reshape(-1, 5),
+        met=np.ascontiguousarray(situation.met, dtype=np.float64).reshape(-1, 4),
+        shelf_m=np.array([shelf.width_m, shelf.depth_m]),
+        reach=np.array([reach.blade_m, reach.overlap_m, reach.gap_m, float(reach.suction)]),
+        steps_m=np.array((depth or Depth()).steps_m),
+        floor=floor,
+    )
+
+
+def named_move(situation: Situation, index: int, by_cup: bool, corner: Floats) -> Move:
+    """Return the move of an object whose low corner goes somewhere, shape (2,)."""
+    own = footprints([situation.boxes[index]])[0]
+    return _named(situation.labels[index], own, by_cup, corner)
+
+
+def _named(label: str, own: Floats, by_cup: bool, corner: Floats) -> Move:
+    if not by_cup:
+        return Push(label, float(corner[0] - own[0]))
+    middle = corner + 0.5 * (own[2:4] - own[:2])
+    return Place(label, float(middle[0]), float(middle[1]))
+
+
+class _Search:
+    """One decision."""
+
+    def __init__(self, situation: Situation, depth: Depth) -> None:
+        self._situation, self._depth = situation, depth
+        poses, weights = _blocks(situation, depth.block_m)
+        whole = outlook(situation.camera, situation.places_m[poses], situation.target_m)
+        kept = _likely(weights)
+        self._view, self._weights = restricted(whole, kept), weights[kept]
+        self._weights = self._weights / self._weights.sum()
+        self._inputs = kernel_inputs(situation, depth)
+
+    def best(self) -> Plan | None:
+        start = self._start()
+        beam, done = [start], list[_Branch]()
+        for _ in range(self._depth.moves):
+            longer = _best([child for branch in beam for child in self._children(branch)],
+                           self._depth.beam)  # fmt: skip
+            beam = [self._carried_out(branch) for branch in longer]
+            done += [branch for branch in beam if branch.unfound < REST]
+            beam = [branch for branch in beam if branch.unfound >= REST]
+            if not beam:
+                break
+        ends = [*done, *beam]
+        if not ends:
+            return None
+        first = min(ends, key=lambda branch: branch.cost)
+        return Plan(first.moves, first.shows[0], first.cost)
+
+    def _start(self) -> _Branch:
+        boxes = self._inputs.boxes
+        # A pose that would show already, by a hair of its block, is as hidden as its neighbours.
+        seen, shown, _ = self._assess(boxes, self._weights)
+        weights = np.where(seen == 1, 0.0, self._weights) if shown < 1.0 else self._weights
+        weights = weights / weights.sum()
+        return _Branch(boxes, weights, 1.0, 1.0, np.inf)
+
+    def _children(self, branch: _Branch) -> list[_Branch]:
+        """Return the branch with each of the best next moves, not yet carried out."""
+        situation, view, inputs = self._situation, self._view, self._inputs
+        moved, by_cup, corners = moves_from(
+            branch.boxes, situation.movable, inputs.met, inputs.shelf_m, inputs.reach,
+            inputs.steps_m, inputs.floor, situation.cell_m,
+        )  # fmt: skip
+        fresh = self._fresh(moved, corners)
+        moved, by_cup, corners = moved[fresh], by_cup[fresh], corners[fresh]
+        shown, behind = consider(
+            branch.boxes, situation.movable, inputs.met, inputs.shelf_m[0], inputs.reach,
+            view.slopes, view.eye, view.column, view.depth, view.top, view.start, view.shows,
+            branch.weights, moved, corners,
+        )  # fmt: skip
+        far_m = np.abs(corners - branch.boxes[moved, :2]).sum(axis=1)
+        costs = branch.spent + self._depth.tail * behind + HASTE_1_M * far_m
+        # A shortlist is enough: siblings compete for the same beam.
+        order = np.argsort(costs, kind="stable")[: SHORTLIST * self._depth.beam]
+        return [
+            self._child(
+                branch,
+                (int(moved[pick]), bool(by_cup[pick]), corners[pick]),
+                float(shown[pick]),
+                float(costs[pick]),
+            )
+            for pick in order.tolist()
+        ]
+
+    def _child(
+        self, branch: _Branch, move: tuple[int, bool, Floats], shown: float, cost: float
+    ) -> _Branch:
+        index, by_cup, corner = move
+        boxes = branch.boxes.copy()
+        boxes[index, 2:4] += corner - boxes[index, :2]
+        boxes[index, :2] = corner
+        unfound = max(branch.unfound - shown, 0.0)
+        named = _named(self._situation.labels[index], branch.boxes[index], by_cup, corner)
+        return _Branch(
+            boxes, branch.weights, unfound, branch.spent + unfound, cost,
+            (*branch.moves, named), (*branch.shows, shown),
+        )  # fmt: skip
+
+    def _carried_out(self, branch: _Branch) -> _Branch:
+        """Return a branch with the poses ruled out that its last move shows."""
+        seen, _, _ = self._assess(branch.boxes, branch.weights)
+        return replace(branch, weights=np.where(seen == 1, 0.0, branch.weights))
+
+    def _assess(self, boxes: Floats, weights: Floats) -> tuple[Ints, float, float]:
+        view, inputs = self._view, self._inputs
+        answer: tuple[Ints, float, float] = assess(
+            boxes, self._situation.movable, inputs.met, inputs.shelf_m[0], inputs.reach,
+            view.slopes, view.eye, view.column, view.depth, view.top, view.start, view.shows,
+            weights,
+        )  # fmt: skip
+        return answer
+
+    def _fresh(self, moved: Ints, corners: Floats) -> Bools:
+        """Say which moves do not bring an object back to where it has been."""
+        fresh = np.ones(len(moved), dtype=bool)
+        for label, box in self._situation.been:
+            if label in self._situation.labels:
+                index = self._situation.labels.index(label)
+                back = np.abs(corners - np.array(box.low_m[:2])).max(axis=1) < BACK_M
+                fresh &= ~(back & (moved == index))
+        return fresh
+
+
+def _best(branches: list[_Branch], most: int) -> list[_Branch]:
+    """Return the cheapest branches; of those that end alike, one."""
+    best: dict[bytes, _Branch] = {}
+    for branch in sorted(branches, key=lambda one: one.cost):
+        if len(best) == most:
+            break
+        best.setdefault(np.round(branch.boxes, 3).tobytes(), branch)
+    return list(best.values())
+
+
+def _blocks(situation: Situation, block_m: float) -> tuple[Ints, Floats]:
+    """Return the likeliest pose of each block of the floor, and the block's probability."""
+    blocks = np.floor(situation.places_m / block_m).astype(np.int64)
+    order = np.lexsort((-situation.weights, blocks[:, 1], blocks[:, 0]))
+    ordered = blocks[order]
+    first = np.ones(len(order), dtype=bool)
+    first[1:] = (ordered[1:] != ordered[:-1]).any(axis=1)
+    sums = np.add.reduceat(situation.weights[order], np.flatnonzero(first))
+    poses = order[first]
+    ascending = np.argsort(poses)
+    return poses[ascending], sums[ascending]
+
+
+def _likely(weights: Floats) -> Ints:
+    """Return the fewest poses that hold all but the rest of the probability, ascending."""
+    order = np.argsort(-weights, kind="stable")
+    count = int(np.searchsorted(np.cumsum(weights[order]), (1.0 - REST) * weights.sum())) + 1
+    return np.sort(order[:count])

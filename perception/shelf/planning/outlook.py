@@ -1,0 +1,73 @@
+"""Where a hidden target would show: its poses as columns of an image, for looking ahead."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from perception.camera import CameraModel
+from perception.shelf.planning.kernels import Ints, survey
+from perception.shelf.types import Floats, Size
+
+# Columns across the image; finer ones cost time and change no decision.
+COLUMNS = 96
+# A pose counts as seen when it rises above what is before it by this share of its own face. More
+# than the thesis's 1 %: poses stand for their neighbours, and places are known to some millimetres.
+SHOWN = 0.04
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Outlook:
+    """The columns in which each pose of a target would show.
+
+    Attributes:
+        eye: Position of the camera [m], shape (3,).
+        slopes: Direction of each column, x over depth, shape (C,).
+        column: Column of each entry, shape (E,).
+        depth: Depth of the target there [m].
+        top: Its elevation there.
+        start: First entry of each pose, and the end of the last, shape (K + 1,).
+        shows: By how much a pose must rise above what is before it to be seen, shape (K,).
+    """
+
+    eye: Floats
+    slopes: Floats
+    column: Ints
+    depth: Floats
+    top: Floats
+    start: Ints
+    shows: Floats
+
+
+def outlook(camera: CameraModel, places_m: Floats, target_m: Size, shown: float = SHOWN) -> Outlook:
+    """Return where a target would show.
+
+    Args:
+        camera: What looks into the shelf, about level, along y.
+        places_m: Where the target's centre may be, shape (K, 2).
+        target_m: Its size.
+        shown: Share of its face that has to be seen.
+    """
+    eye = camera.T_world_camera[:3, 3].copy()
+    right, along = camera.T_world_camera[:3, 0], camera.T_world_camera[:3, 2]
+    edges = np.linspace(-0.5, camera.width_px - 0.5, COLUMNS) - camera.centre_px[0]
+    across = edges / camera.focal_px
+    slopes = (along[0] + across * right[0]) / (along[1] + across * right[1])
+    half = 0.5 * np.array(target_m[:2])
+    heights = np.full((len(places_m), 1), target_m[2])
+    near, rise = survey(np.hstack([places_m - half, places_m + half, heights]), slopes, eye)
+    cell, column = np.nonzero(np.isfinite(near))
+    depth, top = near[cell, column], rise[cell, column]
+    faces = np.bincount(cell, weights=top + eye[2] / depth, minlength=len(places_m))
+    start = np.searchsorted(cell, np.arange(len(places_m) + 1))
+    return Outlook(eye, slopes, column, depth, top, start, np.maximum(shown * faces, 1e-6))
+
+
+def restricted(whole: Outlook, poses: Ints) -> Outlook:
+    """Return the outlook of some of the poses, by number, ascending."""
+    counts = whole.start[poses + 1] - whole.start[poses]
+    start = np.concatenate([[0], np.cumsum(counts)])
+    entries = np.repeat(whole.start[poses] - start[:-1], counts) + np.arange(start[-1])
+    return Outlook(
+        whole.eye, whole.slopes, whole.column[entries], whole.depth[entries], whole.top[entries],
+        start, whole.shows[poses],
+    )  # fmt: skip

@@ -1,0 +1,226 @@
+"""What a search believes after each look and move, and what it does next."""
+
+from collections import OrderedDict
+from dataclasses import replace
+
+import numpy as np
+
+from perception.camera import CameraModel
+from perception.rgbd import RgbdFrame
+from perception.shelf.affinity import AffinityMatrix
+from perception.shelf.beliefs import SeenObject, ShelfBelief
+from perception.shelf.casting import BoxCaster
+from perception.shelf.detections import Detections
+from perception.shelf.drawing import drawn_belief
+from perception.shelf.hidden_poses import HiddenPoses
+from perception.shelf.interfaces import object_of
+from perception.shelf.organisation import organisation_of
+from perception.shelf.planning.contacts import contact_of
+from perception.shelf.planning.free_floor import CELL_M, covered_cells, free_cells
+from perception.shelf.planning.looking_ahead import (
+    ANYHOW,
+    FIXED,
+    Depth,
+    Situation,
+    look_ahead,
+)
+from perception.shelf.planning.moves import Move, Plan
+from perception.shelf.planning.room import Reach, footprints
+from perception.shelf.planning.tidying import tidying_move
+from perception.shelf.planning.ways_out import freeing_move
+from perception.shelf.refining import refined
+from perception.shelf.semantic import floor_semantics
+from perception.shelf.stock import Stock
+from perception.shelf.tracking import Look, tracked
+from perception.shelf.types import Bools, Box, Floats, ShelfView, Sighting
+
+# So many cameras' rays and silhouettes are kept: they cost more than everything else.
+KEPT = 8
+# After these failures an object is not where it was, and must be looked for.
+GONE = ("push.nothing_there", "suction.lost")
+
+
+class SearchReasoner:
+    """`ShelfReasoning` on exact geometry, affinities and looking ahead.
+
+    It keeps nothing but what follows from a camera's pose and a target's size.
+    """
+
+    def __init__(
+        self, stock: Stock, affinity: AffinityMatrix, reach: Reach, camera: CameraModel
+    ) -> None:
+        """Take what stays the same.
+
+        Args:
+            stock: The shelf and its products.
+            affinity: Affinities between them.
+            reach: What the tool needs.
+            camera: The one at the viewpoint from which the search looks between moves.
+        """
+        self._stock, self._affinity, self._reach, self._camera = stock, affinity, reach, camera
+        self._casters: OrderedDict[bytes, BoxCaster] = OrderedDict()
+        self._poses: OrderedDict[tuple[bytes, str], HiddenPoses] = OrderedDict()
+
+    def begin(self, target: str) -> ShelfBelief:
+        """See `ShelfReasoning`."""
+        size_m = self._stock.product(target).size_m
+        self._affinity.row(target)
+        places_m = self._hidden(self._camera, target).places_m
+        shelf, count = self._stock.shelf, len(places_m)
+        cells = free_cells_shape(shelf.width_m, shelf.depth_m)
+        return ShelfBelief(
+            target=target,
+            target_m=size_m,
+            objects=(),
+            places_m=places_m,
+            left=np.ones(count, dtype=bool),
+            weights=np.full(count, 1.0 / count),
+            organisation=0.5,
+            floor=np.zeros(cells, dtype=bool),
+            met=np.zeros((0, 4)),
+            been=(),
+            picture=np.zeros((self._camera.height_px, self._camera.width_px, 3), dtype=np.uint8),
+            looks=0,
+        )
+
+    def refine(self, detections: Detections) -> Detections:
+        """See `ShelfReasoning`."""
+        return refined(detections, self._affinity)
+
+    def see(self, belief: ShelfBelief, frame: RgbdFrame, detections: Detections) -> ShelfBelief:
+        """See `ShelfReasoning`."""
+        caster = self._caster(frame.camera)
+        numbers = tuple(f"{number}" for number in range(detections.count))
+        view = ShelfView(frame.depth_m, detections.segments, numbers, frame.camera)
+        objects = tracked(Look(view, detections, caster), belief.objects, self._stock)
+        poses = self._hidden(frame.camera, belief.target)
+        left = belief.left & poses.feasible(view, _others(objects, detections, belief.target))
+        # A look that leaves nothing is not believed: something has moved, or was mistaken.
+        left = left if left.any() else belief.left
+        seen = replace(
+            belief,
+            objects=objects,
+            left=left,
+            floor=self._floor(belief, view, caster, objects),
+            looks=belief.looks + 1,
+        )
+        seen = self._weighted(seen)
+        heat = poses.heat(seen.weights)
+        picture = drawn_belief(frame.colour, detections.segments, heat, seen.objects, belief.target)
+        return replace(seen, picture=picture)
+
+    def choose(self, belief: ShelfBelief) -> Plan | None:
+        """See `ShelfReasoning`."""
+        return look_ahead(self._situation(belief), Depth(moves=3))
+
+    def clear_way(self, belief: ShelfBelief, label: str) -> Move | None:
+        """See `ShelfReasoning`."""
+        return freeing_move(self._situation(belief, staying=label), label)
+
+    def restore(self, belief: ShelfBelief) -> Move | None:
+        """See `ShelfReasoning`."""
+        return tidying_move(self._situation(belief), belief.first)
+
+    def moved(self, belief: ShelfBelief, label: str, box: Box, met: Floats) -> ShelfBelief:
+        """See `ShelfReasoning`."""
+        before = object_of(belief, label)
+        objects = tuple(
+            replace(one, box=box, sure=box) if one.label == label else one for one in belief.objects
+        )
+        been = belief.been if before is None else (*belief.been, (label, before.box))
+        return replace(belief, objects=objects, been=been, met=np.vstack([belief.met, met]))
+
+    def refused(self, belief: ShelfBelief, move: Move, failure: str) -> ShelfBelief:
+        """See `ShelfReasoning`."""
+        thing = object_of(belief, move.label)
+        if thing is None:
+            return belief
+        if failure in GONE:
+            return self.removed(belief, move.label)
+        met = contact_of(move, thing.box, failure)
+        return replace(belief, met=np.vstack([belief.met, met]))
+
+    def removed(self, belief: ShelfBelief, label: str) -> ShelfBelief:
+        """See `ShelfReasoning`."""
+        return replace(belief, objects=tuple(one for one in belief.objects if one.label != label))
+
+    def _situation(self, belief: ShelfBelief, staying: str = "") -> Situation:
+        fixed = {belief.target, staying}
+        return Situation(
+            shelf=self._stock.shelf,
+            reach=self._reach,
+            camera=self._camera,
+            labels=tuple(one.label for one in belief.objects),
+            boxes=tuple(one.box for one in belief.objects),
+            movable=np.array(
+                [FIXED if one.label in fixed else ANYHOW for one in belief.objects], dtype=np.int64
+            ),
+            met=belief.met,
+            floor=belief.floor,
+            cell_m=CELL_M,
+            target_m=belief.target_m,
+            places_m=belief.places_m,
+            weights=belief.weights,
+            been=belief.been,
+        )
+
+    def _weighted(self, belief: ShelfBelief) -> ShelfBelief:
+        """Weigh the poses left by semantics, as far as the shelf is in order."""
+        first = belief.first
+        organisation = organisation_of(first, self._affinity)
+        mixed = self._affinity.mixed(organisation)
+        weights = belief.left * floor_semantics(belief.places_m, first, mixed, belief.target)
+        return replace(belief, weights=weights / weights.sum(), organisation=organisation)
+
+    def _floor(
+        self,
+        belief: ShelfBelief,
+        view: ShelfView,
+        caster: BoxCaster,
+        objects: tuple[SeenObject, ...],
+    ) -> Bools:
+        """Return which cells of the floor are known to be free, by this look or an earlier one."""
+        free = belief.floor | free_cells(view, self._stock.shelf, caster)
+        for row in footprints([one.box for one in objects]):
+            free = free & ~covered_cells(row, self._stock.shelf)
+        return free
+
+    def _caster(self, camera: CameraModel) -> BoxCaster:
+        key = _key(camera)
+        if key not in self._casters:
+            self._casters[key] = BoxCaster(camera)
+            if len(self._casters) > KEPT:
+                self._casters.popitem(last=False)
+        return self._casters[key]
+
+    def _hidden(self, camera: CameraModel, target: str) -> HiddenPoses:
+        key = (_key(camera), target)
+        if key not in self._poses:
+            size_m = self._stock.product(target).size_m
+            self._poses[key] = HiddenPoses(size_m, self._stock.shelf, self._caster(camera))
+            if len(self._poses) > KEPT:
+                self._poses.popitem(last=False)
+        return self._poses[key]
+
+
+def free_cells_shape(width_m: float, depth_m: float) -> tuple[int, int]:
+    """Return how many cells of the floor there are along x and y."""
+    return (
+        len(np.arange(0.5 * CELL_M, width_m, CELL_M)),
+        len(np.arange(0.5 * CELL_M, depth_m, CELL_M)),
+    )
+
+
+def _others(
+    objects: tuple[SeenObject, ...], detections: Detections, target: str
+) -> tuple[Sighting, ...]:
+    """Return what is known to stand where the target can then not be."""
+    nothing = np.zeros(detections.segments.shape, dtype=bool)
+    return tuple(
+        Sighting(one.label, nothing, one.box, one.sure) for one in objects if one.label != target
+    )
+
+
+def _key(camera: CameraModel) -> bytes:
+    numbers = [camera.width_px, camera.height_px, camera.focal_px, *camera.centre_px]
+    return np.concatenate([np.array(numbers), camera.T_world_camera.ravel()]).tobytes()

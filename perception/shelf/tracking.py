@@ -1,0 +1,178 @@
+"""One object in several looks: which sighting is which object, and what it is by all readings."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.optimize import linear_sum_assignment
+
+from perception.shelf.beliefs import OUT_OF_VIEW, SeenObject
+from perception.shelf.casting import BoxCaster
+from perception.shelf.detections import LEAST, Detections, entropy_bits
+from perception.shelf.planning.room import footprints
+from perception.shelf.sightings import sightings
+from perception.shelf.stock import Stock
+from perception.shelf.types import Box, Floats, ShelfView, Sighting, corners
+
+# Sightings that fit an object worse are those of another one; see `_misfits`.
+WORST_FIT = 0.7
+# An object is gone when this share of where it stood is seen to be free.
+GONE = 0.3
+MARGIN_M = 0.02
+UNKNOWN = "unknown"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Look:
+    """A depth image with what a detector made of it.
+
+    Attributes:
+        view: Depth and segments; its labels are the best names of this look alone.
+        detections: What was detected.
+        caster: Rays of the camera.
+    """
+
+    view: ShelfView
+    detections: Detections
+    caster: BoxCaster
+
+
+def tracked(look: Look, before: Sequence[SeenObject], stock: Stock) -> tuple[SeenObject, ...]:
+    """Return all objects that are known after a look.
+
+    Of several readings of an object the one with the least entropy is kept (thesis, section 6.2).
+    No two objects have one name: the stock has one of each.
+
+    Args:
+        look: The look.
+        before: Objects known before it, where they are believed to stand now.
+        stock: Sizes and names.
+    """
+    labels = unique_names(look.detections.probabilities, stock.names)
+    seen = _sighted(look, labels, stock)
+    partners = _partners(seen, look.detections, before)
+    readings = look.detections.probabilities.copy()
+    for number, partner in partners.items():
+        both = np.array([readings[number], before[partner].probabilities])
+        readings[number] = both[int(np.argmin(entropy_bits(both)))]
+    kept = _kept(look, [before[i] for i in range(len(before)) if i not in partners.values()])
+    rows = np.vstack([readings, *(one.probabilities[None] for one in kept)])
+    names = unique_names(rows, stock.names)
+    if names[: len(readings)] != labels:
+        seen = _sighted(look, names[: len(readings)], stock)
+    shares = _shares(look, seen)
+    fresh = tuple(
+        SeenObject(
+            names[number],
+            _certainty(rows[number], names[number], stock),
+            rows[number],
+            sighting.box,
+            sighting.sure,
+            before[partners[number]].first if number in partners else sighting.box,
+            number,
+            shares[number],
+        )
+        for number, sighting in seen.items()
+    )
+    return fresh + tuple(
+        replace(one, label=name, certainty=_certainty(one.probabilities, name, stock))
+        for one, name in zip(kept, names[len(readings) :], strict=True)
+    )
+
+
+def unique_names(rows: Floats, names: tuple[str, ...]) -> tuple[str, ...]:
+    """Give objects different names so that their probability is greatest together.
+
+    Args:
+        rows: Probabilities of the names, shape (K, N).
+        names: The names.
+    """
+    rest = np.maximum(1.0 - rows.sum(axis=1), LEAST)
+    # Each object may also have no name, on its own.
+    none = np.where(np.eye(len(rows), dtype=bool), rest[:, None], LEAST**2)
+    costs = -np.log(np.maximum(np.hstack([rows, none]), LEAST**2))
+    _, picked = linear_sum_assignment(costs)
+    unknown = iter(range(1, len(rows) + 1))
+    return tuple(
+        names[pick] if pick < len(names) else f"{UNKNOWN} {next(unknown)}" for pick in picked
+    )
+
+
+def _certainty(row: Floats, name: str, stock: Stock) -> float:
+    if name in stock.names:
+        return float(row[stock.names.index(name)])
+    return float(max(1.0 - row.sum(), 0.0))
+
+
+def _sighted(look: Look, labels: tuple[str, ...], stock: Stock) -> dict[int, Sighting]:
+    """Return sightings by number of their segment; without depth there is none."""
+    view = replace(look.view, labels=labels)
+    found = sightings(view, stock.shelf, stock.sizes_m, look.caster)
+    return {labels.index(sighting.label): sighting for sighting in found}
+
+
+def _partners(
+    seen: dict[int, Sighting], detections: Detections, before: Sequence[SeenObject]
+) -> dict[int, int]:
+    """Return which object known before each segment shows, where it shows one."""
+    if not seen or not before:
+        return {}
+    numbers = list(seen)
+    here = footprints([seen[number].box for number in numbers])
+    there = footprints([one.box for one in before])
+    known = np.array([one.probabilities for one in before])
+    misfits = 1.0 - 0.5 * _overlap_shares(here, there)
+    misfits -= 0.5 * _agreement(detections.probabilities[numbers], known)
+    rows, columns = linear_sum_assignment(misfits)
+    return {
+        numbers[row]: int(column)
+        for row, column in zip(rows, columns, strict=True)
+        if misfits[row, column] < WORST_FIT
+    }
+
+
+def _overlap_shares(here: Floats, there: Floats) -> Floats:
+    """Return intersection over union of footprints, shape (K, M)."""
+    low = np.maximum(here[:, None, :2], there[None, :, :2])
+    high = np.minimum(here[:, None, 2:], there[None, :, 2:])
+    common = np.maximum(high - low, 0.0).prod(axis=2)
+    areas = [(rows[:, 2:] - rows[:, :2]).prod(axis=1) for rows in (here, there)]
+    shares: Floats = common / (areas[0][:, None] + areas[1][None] - common)
+    return shares
+
+
+def _agreement(here: Floats, there: Floats) -> Floats:
+    """Return how much of two readings agrees, shape (K, M): the overlap of distributions."""
+    rest = [np.maximum(1.0 - rows.sum(axis=1, keepdims=True), 0.0) for rows in (here, there)]
+    one, other = np.hstack([here, rest[0]]), np.hstack([there, rest[1]])
+    shares: Floats = np.minimum(one[:, None], other[None]).sum(axis=2)
+    return shares
+
+
+def _shares(look: Look, seen: dict[int, Sighting]) -> dict[int, float]:
+    """Return how much of each object's silhouette its segment covers."""
+    shown = look.caster.cast(*corners([sighting.box for sighting in seen.values()]))
+    whole = shown.sums(np.ones(len(shown.pixel)))
+    return {
+        number: float(min(1.0, sighting.mask.sum() / max(pixels, 1.0)))
+        for (number, sighting), pixels in zip(seen.items(), whole, strict=True)
+    }
+
+
+def _kept(look: Look, unseen: Sequence[SeenObject]) -> list[SeenObject]:
+    """Return those of the objects that are not in view which may stand where they stood."""
+    shown = look.caster.cast(*corners([_core(one.box) for one in unseen]))
+    depth_m = look.view.depth_m.ravel()[shown.pixel]
+    free = shown.sums((depth_m > shown.depth_m + MARGIN_M).astype(np.float64))
+    whole = np.maximum(shown.sums(np.ones(len(shown.pixel))), 1.0)
+    return [
+        replace(one, number=OUT_OF_VIEW, share=0.0)
+        for one, share in zip(unseen, free / whole, strict=True)
+        if share < GONE
+    ]
+
+
+def _core(box: Box) -> Box:
+    """Return the middle of a box, whose place is known to some millimetres alone."""
+    width_m, depth_m, height_m = box.size_m
+    return Box(box.x_m, box.y_m, (0.8 * width_m, 0.8 * depth_m, 0.9 * height_m))

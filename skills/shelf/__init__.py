@@ -1,0 +1,1 @@
+"""Skills that search a shelf."""
