@@ -52,6 +52,17 @@ class PlannedDualArm(PlannedMotions):
         return self._planner.to_goals(start, goals)
 
     @one_at_a_time
+    def plan_at_own_pace(self, goals: Mapping[ArmName, Goal]) -> Trajectory | MotionFailure:
+        """Plan a free motion in which each arm takes the time that it needs alone.
+
+        The arms are checked against each other at every moment; one may have to start later.
+        """
+        start = self._rest()
+        if isinstance(start, MotionFailure):
+            return start
+        return self._planner.at_own_pace(start, goals)
+
+    @one_at_a_time
     def plan_line(self, displacements_m: Mapping[ArmName, Floats]) -> Trajectory | MotionFailure:
         """Plan straight tool motions from the present poses, in step, orientation kept."""
         start = self._rest()

@@ -12,9 +12,11 @@ from typing import ParamSpec
 import numpy as np
 
 from robots.interfaces import ArmName, Floats, Goal, MotionFailure, Trajectory
+from robots.motion.collision import CollisionModel
 from robots.motion.line import ArmLine, in_step, line_steps, line_variants
 from robots.motion.line_timing import time_curve
 from robots.motion.model import RobotModel
+from robots.motion.own_pace import beside_each_other
 from robots.motion.path import PathSearch, Space
 from robots.motion.search import called
 from robots.motion.solver import GoalSolver
@@ -121,6 +123,38 @@ class MotionPlanner:
         return self._to_any(start_rad, found, tuple(goals))
 
     @_costed
+    def at_own_pace(
+        self, start_rad: Floats, goals: Mapping[ArmName, Goal]
+    ) -> Trajectory | MotionFailure:
+        """Plan to goals of arms, each as fast as it can, together free of collisions in time.
+
+        Where they are there sooner in step, as `to_goals` has them move, they are in step.
+        """
+        found = self.solver.configurations(goals, start_rad, self.settings.goal_solutions)
+        if isinstance(found, MotionFailure):
+            return found
+        in_step = self._to_any(start_rad, found, tuple(goals))
+        apart = self._apart(start_rad, found[: self.settings.path_goals], tuple(goals))
+        answers = [way for way in (in_step, apart) if not isinstance(way, MotionFailure | None)]
+        return min(answers, key=lambda way: way.duration_s) if answers else in_step
+
+    def _apart(
+        self, start: Floats, ends: Sequence[Floats], arms: Sequence[str]
+    ) -> Trajectory | None:
+        """Return a motion of two arms at their own pace to the first end that has one."""
+        for end in ends if len(arms) == 2 else ():
+            motions = {}
+            for arm in arms:
+                alone = self._to_any(start, [end], (arm,), self.solver.alone[arm])
+                if not isinstance(alone, MotionFailure):
+                    motions[arm] = alone
+            if len(motions) == len(arms):
+                together = beside_each_other(self.robot, self.solver.together, motions)
+                if together and not isinstance(self._checked(together), MotionFailure):
+                    return together
+        return None
+
+    @_costed
     def to_configuration(self, start_rad: Floats, end_rad: Floats) -> Trajectory | MotionFailure:
         """Plan to a configuration of all arms."""
         beyond = np.maximum(self.limits.lower - end_rad, end_rad - self.limits.upper)
@@ -176,26 +210,30 @@ class MotionPlanner:
         return _untimed("line") if trajectory is None else self._checked(trajectory)
 
     def _to_any(
-        self, start: Floats, ends: Sequence[Floats], arms: Sequence[str]
+        self,
+        start: Floats,
+        ends: Sequence[Floats],
+        arms: Sequence[str],
+        checker: CollisionModel | None = None,
     ) -> Trajectory | MotionFailure:
         rng = np.random.default_rng([self._seed, self.requests])
         self.requests += 1
+        collision = checker or self.solver.together
         moving = np.concatenate([np.r_[self.robot.joints_of(arm)] for arm in arms])
-        space = self._space(start, moving)
+        space = self._space(start, moving, collision)
         failure: MotionFailure | None = None
         search = PathSearch(space, rng, self.settings.path_checks, self.settings.path_goals)
         for path in search.paths(start[moving], [end[moving] for end in ends]):
             whole = np.tile(start, (len(path), 1))
             whole[:, moving] = path
-            answer = self._timed(whole, rng)
+            answer = self._timed(whole, rng, collision)
             if not isinstance(answer, MotionFailure):
                 return answer
             failure = answer
         return failure or self._no_path(arms, ends)
 
-    def _space(self, base: Floats, moving: Floats) -> Space:
+    def _space(self, base: Floats, moving: Floats, collision: CollisionModel) -> Space:
         whole = base.copy()
-        collision = self.solver.together
 
         def collides(positions_rad: Floats) -> bool:
             whole[moving] = positions_rad
@@ -204,18 +242,23 @@ class MotionPlanner:
         limits = self.limits.of(moving)
         return Space(limits.lower, limits.upper, self.robot.levers_m[moving], collides)
 
-    def _timed(self, path: Floats, rng: np.random.Generator) -> Trajectory | MotionFailure:
+    def _timed(
+        self, path: Floats, rng: np.random.Generator, collision: CollisionModel
+    ) -> Trajectory | MotionFailure:
         stops = stop_at_waypoints(list(path), self.limits)
         if stops is None:
             return _untimed("timing")
         tries = self.settings.corner_tries if len(path) > 2 else 0
-        collision = self.solver.together
         cut = cut_corners(stops, self.limits, lambda q: not collision.collides(q), rng, tries)
-        answer = self._checked(cut)
-        return self._checked(stops) if isinstance(answer, MotionFailure) and tries else answer
+        answer = self._checked(cut, collision)
+        if isinstance(answer, MotionFailure) and tries:
+            return self._checked(stops, collision)
+        return answer
 
-    def _checked(self, trajectory: Trajectory) -> Trajectory | MotionFailure:
-        return find_fault(trajectory, self.limits, self.solver.together) or trajectory
+    def _checked(
+        self, trajectory: Trajectory, checker: CollisionModel | None = None
+    ) -> Trajectory | MotionFailure:
+        return find_fault(trajectory, self.limits, checker or self.solver.together) or trajectory
 
     def _no_path(self, arms: Sequence[str], ends: Sequence[Floats]) -> MotionFailure:
         tried = min(len(ends), self.settings.path_goals)

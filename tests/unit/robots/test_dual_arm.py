@@ -63,6 +63,32 @@ def test_plans_are_free_of_collisions_all_the_way(arms, driver, collision):
         run(arms, driver, plan)
 
 
+def test_arms_at_their_own_pace_keep_apart_and_are_no_slower(arms, driver, robot, collision):
+    collision.set_openings(driver.openings_m)
+    rng = np.random.default_rng(5)
+    for _ in range(5):
+        x, y = rng.uniform([0.05, -0.15], [0.25, 0.1])
+        goals = {"left": goal(-x, y, yaw=rng.uniform(0, 3)), "right": goal(x, -y, yaw=0.3)}
+        in_step, own = arms.plan(goals), arms.plan_at_own_pace(goals)
+        _, q, velocity, acceleration = sample(own, 0.001)
+        assert not any(collision.collides(row) for row in q)
+        assert np.all(np.abs(velocity) <= robot.limits.velocity * 1.001)
+        assert np.all(np.abs(acceleration) <= robot.limits.acceleration * 1.001)
+        assert own.duration_s <= 1.1 * in_step.duration_s
+        run(arms, driver, own)
+        for arm, asked in goals.items():
+            assert arms.tcp_position(arm) == pytest.approx(asked.position_m, abs=1e-4)
+
+
+def test_an_arm_waits_while_the_other_crosses_its_way(arms, driver, robot, collision):
+    """Both arms swap sides over the middle: one has to let the other pass."""
+    collision.set_openings(driver.openings_m)
+    run(arms, driver, arms.plan({"left": goal(0.06, -0.1), "right": goal(0.3, 0.05)}))
+    plan = arms.plan_at_own_pace({"left": goal(-0.3, 0.05), "right": goal(0.0, -0.05, z=0.03)})
+    assert not isinstance(plan, MotionFailure), plan
+    assert not any(collision.collides(row) for row in sample(plan, 0.002)[1])
+
+
 def test_the_same_seed_plans_the_same(driver):
     def motion():
         arms = PlannedDualArm(FakeArms(HOME_RAD), seed=5)
