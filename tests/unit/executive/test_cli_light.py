@@ -32,6 +32,8 @@ MISSION = Path(__file__).parents[3] / "trees" / "missions" / "untangle.yaml"
         ["tree", "show", str(MISSION)],
         ["inspect", "--help"],
         ["perceive", "cable", "--help"],
+        ["affinity", "--help"],
+        ["affinity", "show", "pharmacy"],
         ["train", "--help"],
         ["doctor", "--help"],
     ],
