@@ -1,10 +1,13 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from cell_fakes import ArrivingArms, finished, frame, overhand
 
 from executive.core.work import InlineWorker
 from perception.cable.grasp_sites import cage_sites, pinch_sites
-from skills.cable.dilate_knot import HANDS_APART_M, REACH_X_M, DilateKnot, apart, ranked_pairs
+from skills.cable.dilate_knot import DilateKnot, apart
+from skills.cable.knot_sites import HANDS_APART_M, REACH_X_M, given_pairs, ranked_pairs
 
 
 def inputs(**more):
@@ -83,3 +86,16 @@ def test_hands_never_leave_the_reach_when_they_move_apart(middle_x_m):
     ends = {arm: tips[arm] + way for arm, way in apart(tips, 0.6).items()}
     assert all(abs(end[0]) <= REACH_X_M + 1e-9 for end in ends.values())
     assert np.linalg.norm(ends["left"] - ends["right"]) == pytest.approx(0.6)
+
+
+def test_given_places_come_first_and_a_walk_makes_room_for_two_hands():
+    trace, _, knot = overhand()
+    at_crossing = trace.points_px[int(0.7 * len(trace.points_px))]
+    knot = replace(knot, cage_px=trace.points_px[40], pinch_px=at_crossing)
+    pairs = given_pairs(trace, knot, frame())
+    assert np.allclose(pairs[0][0].point_px, knot.cage_px)
+    assert np.allclose(pairs[0][1].point_px, knot.pinch_px)
+    near = replace(knot, pinch_px=trace.points_px[42])
+    walked = given_pairs(trace, near, frame())[0]
+    gap_m = np.linalg.norm(walked[0].point_px - walked[1].point_px) / 1e3
+    assert HANDS_APART_M <= gap_m < HANDS_APART_M + 0.05

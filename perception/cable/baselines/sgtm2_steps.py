@@ -1,0 +1,123 @@
+"""SGTM 2.0 step by step, for a robot's tree.
+
+It knows no crossings. Each place that looks like a dense knot and that a trace runs through is
+carried as one: from where the trace enters it, as if below, to where it leaves it, as if on top.
+"""
+
+import time
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from perception.cable.baselines.one_trace import first_trace
+from perception.cable.baselines.sgtm2 import Detector, first_met
+from perception.cable.grasp_points import GraspConfig, held_strand
+from perception.cable.interfaces import CableVision, Tracer
+from perception.cable.knots import grasp_policy, held_knot
+from perception.cable.types import CableScene, Crossing, Endpoint, Knot, Points, Trace
+from perception.camera import GreyImage
+
+
+class Sgtm2Vision:
+    """Implements `CableVision` as SGTM 2.0 sees.
+
+    Args:
+        parts: Sees ends and cable pixels.
+        tracer: Follows the cable.
+        detector: Finds places that look like dense knots.
+        grasps: The search for cage and pinch points.
+    """
+
+    def __init__(
+        self,
+        parts: CableVision,
+        tracer: Tracer,
+        detector: Detector,
+        grasps: GraspConfig | None = None,
+    ) -> None:
+        self._parts, self._tracer, self._detector = parts, tracer, detector
+        self._grasps = grasps or GraspConfig()
+
+    def cable_pixels(self, image: GreyImage) -> NDArray[np.bool_]:
+        """Say which pixels show cable or connector, shape (height, width)."""
+        return self._parts.cable_pixels(image)
+
+    def pieces(self, image: GreyImage) -> tuple[Points, ...]:
+        """Return unbranched pieces of centre line, longest first, shape (N, 2) each."""
+        return self._parts.pieces(image)
+
+    def endpoints(self, image: GreyImage) -> tuple[Endpoint, ...]:
+        """Find the ends of cables."""
+        return self._parts.endpoints(image)
+
+    def start_points(self, image: GreyImage, endpoint: Endpoint) -> Points | None:
+        """Follow the cable for about 96 px from an end, shape (N, 2); None when unclear."""
+        return self._parts.start_points(image, endpoint)
+
+    def trace(
+        self, image: GreyImage, start_px: Points, endpoints: Sequence[Endpoint]
+    ) -> Trace | None:
+        """Follow one cable; see `Tracer.trace`."""
+        return self._tracer.trace(image, start_px, endpoints)
+
+    def explained_share(self, image: GreyImage, trace: Trace) -> float:
+        """Return the share of cable pixels in view that a trace accounts for, in [0, 1]."""
+        return self._parts.explained_share(image, trace)
+
+    def crossings(self, image: GreyImage, traces: Sequence[Trace]) -> tuple[Crossing, ...]:
+        """Return for each trace the place that looks like a knot and that it comes to first."""
+        tangles = self._detector(image)
+        found = []
+        for number, trace in enumerate(traces):
+            met = first_met(trace, tangles)
+            if met is not None and met[1][1] > met[1][0]:
+                tangle, (enters, leaves) = met
+                belief = float(np.clip(tangle.probability, 0.5, 1.0))
+                found.append(Crossing(tangle.centre_px, number, leaves, number, enters, belief))
+        return tuple(found)
+
+    def knots(
+        self, image: GreyImage, traces: Sequence[Trace], crossings: Sequence[Crossing]
+    ) -> tuple[Knot, ...]:
+        """Return these places as knots, and where to hold them."""
+        del image  # The places are known already.
+        policy = grasp_policy(self._grasps)
+        return tuple(
+            held_knot(
+                policy,
+                held_strand(traces, crossing.trace_over, ()),
+                crossing.trace_over,
+                _interval(crossing),
+            )
+            for crossing in crossings
+        )
+
+    def knotted_probability(self, traces: Sequence[Trace], crossings: Sequence[Crossing]) -> float:
+        """Return the detector's belief in the surest place, 0 where there is none."""
+        del traces
+        return max((crossing.probability for crossing in crossings), default=0.0)
+
+    def scene(self, image: GreyImage, start_px: Points | None = None) -> CableScene:
+        """Do all steps on one image, from a given start or from the first end that is clear."""
+        began_s = time.perf_counter()
+        endpoints = self.endpoints(image)
+        if start_px is None:
+            traces = first_trace(self._parts, self._tracer, image, endpoints)
+        else:
+            trace = self.trace(image, start_px, endpoints)
+            traces = () if trace is None else (trace,)
+        crossings = self.crossings(image, traces)
+        return CableScene(
+            traces=traces,
+            endpoints=endpoints,
+            crossings=crossings,
+            knots=self.knots(image, traces, crossings),
+            knotted_probability=self.knotted_probability(traces, crossings),
+            seconds=time.perf_counter() - began_s,
+        )
+
+
+def _interval(crossing: Crossing) -> tuple[float, float]:
+    """Return where a trace enters and leaves, whichever way round it is read."""
+    return min(crossing.arc_over, crossing.arc_under), max(crossing.arc_over, crossing.arc_under)
