@@ -74,7 +74,7 @@ def summary_lines(records: Sequence[RunRecord], folder: Path) -> Iterator[Text]:
     counts = Counter(record.outcome for record in records)
     words = ", ".join(f"{count} {name}" for name, count in counts.most_common())
     yield Text(f"{len(records)} runs: {words or 'none has ended'}")
-    yield from _failures(records)
+    yield from _failures(records, folder)
     yield Text(f"table: {folder / TABLE}")
 
 
@@ -85,10 +85,10 @@ def _by_variant(records: Sequence[RunRecord]) -> dict[int, list[RunRecord]]:
     return found
 
 
-def _failures(records: Sequence[RunRecord]) -> Iterator[Text]:
+def _failures(records: Sequence[RunRecord], folder: Path) -> Iterator[Text]:
     failed = [one for one in records if one.outcome != "success"]
     for one in failed[:_SHOWN_FAILURES]:
-        where = f"  {one.recording}" if one.recording else ""
+        where = f"  {folder / one.recording}" if one.recording else ""
         yield Text(f"  {one.name}: {one.outcome}: {one.reason}{where}", "bright_black")
     if len(failed) > _SHOWN_FAILURES:
         yield Text(f"  and {len(failed) - _SHOWN_FAILURES} more, in the table", "bright_black")

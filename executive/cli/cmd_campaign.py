@@ -12,6 +12,7 @@ from executive.cli.campaign_faults import faults
 from executive.cli.campaign_signals import terminated_like_interrupted
 from executive.cli.console import chatter, results
 from executive.core.errors import InputError
+from executive.core.registry import closest
 from executive.engine.running.runner import MissionOutcome
 
 if TYPE_CHECKING:
@@ -28,6 +29,8 @@ class _RunByDefault(TyperGroup):
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:
         """Return a subcommand with its arguments, as the base class does."""
         if args and args[0] not in self.commands:
+            if not args[0].startswith("-"):
+                _document_file(Path(args[0]))
             args = [_RUN, *args]
         return super().resolve_command(ctx, args)
 
@@ -139,8 +142,8 @@ def compare(
 def _document_file(file: Path) -> Path:
     if not file.is_file():
         raise InputError(
-            f"{file}: no such file; expected the document of a campaign, or one of "
-            "run, show, compare, faults"
+            f"{file}: no such file; expected the document of a campaign, or one of the words "
+            f"show, compare, faults; {closest(str(file), ['show', 'compare', 'faults'])}"
         )
     return file
 

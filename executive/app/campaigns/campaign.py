@@ -72,6 +72,7 @@ class Campaign:
         Raises:
             InputError: It holds none, or another one.
         """
+        self.folder.plan()  # there is one at all
         with FileLock(self.folder.lock, f"the campaign {self.folder.folder}"):
             self.folder.resume(self._plan())
 

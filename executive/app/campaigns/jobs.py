@@ -55,7 +55,8 @@ class RunRecord(_Message):
     """What one run came to.
 
     `measures` are the numbers and truth values in the mission's claim and in the truth that the
-    world told after it, by name; `peak_mb` is the memory that its process had at most [MB].
+    world told after it, by name; `peak_mb` is the memory that its process had at most [MB];
+    `recording` is a file from the campaign's folder on.
     """
 
     name: str

@@ -104,7 +104,7 @@ def _of(job: Job, outcome: Ending, reason: str, recording: Path) -> RunRecord:
         **job.model_dump(),
         outcome=outcome,
         reason=reason,
-        recording=str(recording) if recording.exists() else "",
+        recording=f"{RECORDINGS}/{recording.name}" if recording.exists() else "",
     )
 
 

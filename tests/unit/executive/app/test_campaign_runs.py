@@ -64,7 +64,7 @@ def test_one_run_that_breaks_loses_only_itself(toy):
     assert "toy.told_to" in found["fail"].reason
     assert "SIGKILL" in found["die"].reason
     for way in ("fail", "raise", "die", "hang", "hoard"):
-        recording = Recording.open(Path(found[way].recording))
+        recording = Recording.open(toy / "out" / found[way].recording)
         assert recording.header.seed == 3
         assert recording.header.inputs["way"] == way
     assert found["hoard"].peak_mb > 250.0 > found["well"].peak_mb
