@@ -105,10 +105,10 @@ def put_down(motions: ShelfMotions, thing: Cuboid, x_m: float, y_m: float) -> St
 
 
 def set_down(motions: ShelfMotions) -> Step:
-    """Lower what is held until the floor is felt, and let go of it."""
+    """Lower what is held until the floor is felt, and let go of it; the floor may take it off."""
     settings, driver = motions.settings, motions.driver
     down = np.array([0.0, 0.0, -settings.lift_m - _OVER_LOWER_M])
-    yield from carry(motions, down, settings.entry_force_n, settings.touch_speed_m_s)
+    yield from motions.line_by(down, settings.lower_speed_m_s, settings.floor_force_n)
     driver.suck(False)
     yield from motions.wait(_RELEASE_S)
 
@@ -117,7 +117,6 @@ def carry(
     motions: ShelfMotions,
     way: Floats,
     most_n: float | None = None,
-    speed_m_s: float | None = None,
 ) -> Step:
     """Carry what the cups hold along a line.
 
@@ -125,7 +124,7 @@ def carry(
         ActionError: It fell off.
     """
     driver = motions.driver
-    for _ in motions.line_by(way, speed_m_s or motions.settings.carry_speed_m_s, most_n):
+    for _ in motions.line_by(way, motions.settings.carry_speed_m_s, most_n):
         if not driver.holds():
             driver.stop()
         yield

@@ -98,6 +98,7 @@ class _Feeling:
         self._touched_m: float | None = None
         self._slide_n = self._most_felt_n = 0.0
         self._pushed_m = 0.0
+        self._met = False
 
     def push(self, along: Floats) -> Generator[None, None, None]:
         """Push until the way is gone or the object meets something."""
@@ -114,10 +115,11 @@ class _Feeling:
                 driver.guard(Guard(direction, self._limit_n()))
             yield
         self._pushed_m = abs(float(motions.tip_m()[0]) - start_m)
+        self._met = driver.tripped()
 
     def result(self) -> ToolResult:
         """Return what came of it, as far as was felt."""
-        asked_m, met = abs(self._action.shift_m), self._motions.driver.tripped()
+        asked_m, met = abs(self._action.shift_m), self._met
         touched_m = self._lane.gap_m if self._touched_m is None else self._touched_m
         moved_m = max(0.0, min(self._pushed_m - touched_m, asked_m))
         short_m = max(0.0, self._lane.gap_m + asked_m - self._pushed_m) if met else 0.0

@@ -15,6 +15,8 @@ class ShelfArmSettings:
         entry_speed_m_s: Of the tool on its way in.
         touch_speed_m_s: Of the cups when they come up to a face.
         carry_speed_m_s: Of what is carried.
+        lower_speed_m_s: Of what is lowered to the floor.
+        floor_force_n: More force than this from below is the floor.
         entry_force_n: More force than this on the way in means that something is in the way.
         wedge_force_n: No push is harder.
         rise_n: What a pushed object meets when the force rises by that much, and
@@ -34,10 +36,12 @@ class ShelfArmSettings:
     entry_speed_m_s: float = 0.15
     touch_speed_m_s: float = 0.04
     carry_speed_m_s: float = 0.15
+    lower_speed_m_s: float = 0.02
+    floor_force_n: float = 1.0
     entry_force_n: float = 2.0
     wedge_force_n: float = 15.0
-    rise_n: float = 0.8
-    rise_share: float = 0.6
+    rise_n: float = 0.4
+    rise_share: float = 0.25
     felt_n: float = 0.15
     lift_m: float = 0.008
     face_slack_m: float = 0.015

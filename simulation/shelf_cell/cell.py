@@ -9,13 +9,9 @@ import numpy as np
 from executive.core.world import StreamMessage
 from perception.shelf.types import Shelf
 from robots.descriptions.kinova import kinova_joint_names
-from robots.descriptions.specs import kinova_spec
 from robots.shelf_arm import scene as place
-from robots.shelf_arm.motions import ShelfMotions
-from robots.shelf_arm.settings import ShelfArmSettings
-from robots.shelf_arm.tool import ArmShelfTool
+from robots.shelf_arm.build import kinova_shelf_tool
 from robots.shelf_tool import ToolShape
-from robots.single_arm import PlannedArm
 from simulation.clock import SimClock
 from simulation.shelf.cameras import front_camera
 from simulation.shelf.scenes import Scene, SceneRules, draw_scene
@@ -23,7 +19,6 @@ from simulation.shelf.taxonomy import shipped_domain
 from simulation.shelf_cell.boxes import Matter, weighed
 from simulation.shelf_cell.camera import ToolCamera
 from simulation.shelf_cell.config import ShelfCellConfig, ShelfScenario
-from simulation.shelf_cell.driver import SimShelfArmDriver
 from simulation.shelf_cell.seeing import visible_shares
 from simulation.shelf_cell.streams import joint_states_json, scene_json
 from simulation.shelf_cell.truth import ShelfTruth, shelf_truth
@@ -75,7 +70,13 @@ class ShelfCell:
         size = _size(self._scene.shelf)
         self._world = ShelfWorld(size, boxes, settings.tool, settings.physics.step_hz, force_rng)
         self.driver = self._world.driver
-        self.tool = _tool(self.driver, size, settings, seed)
+        self.tool = kinova_shelf_tool(
+            self.driver,
+            size,
+            ToolShape(blade_m=settings.tool.lane_m, overlap_m=_OVERLAP_M, gap_m=0.0),
+            seed=seed,
+            look_from_m=(settings.camera.distance_m, settings.camera.height_m),
+        )
         self._colours = colours_of(self._scene.names)
         self.camera = ToolCamera(
             self._world.physics,
@@ -186,21 +187,6 @@ def _scene(wanted: ShelfScenario, rng: np.random.Generator) -> Scene:
 
 def _size(shelf: Shelf) -> place.ShelfSize:
     return place.ShelfSize(shelf.width_m, shelf.depth_m, shelf.height_m)
-
-
-def _tool(
-    driver: SimShelfArmDriver, size: place.ShelfSize, settings: ShelfCellConfig, seed: int
-) -> ArmShelfTool:
-    arm = PlannedArm(driver, kinova_spec(7), place.open_scene(size), place.HOME_RAD, seed=seed)
-    camera = settings.camera
-    return ArmShelfTool(
-        ShelfMotions(arm, driver, size, ShelfArmSettings()),
-        driver,
-        ToolShape(blade_m=settings.tool.lane_m, overlap_m=_OVERLAP_M, gap_m=0.0),
-        place.viewpoints(size, camera.distance_m, camera.height_m),
-        place.T_TIP_CAMERA,
-        place.counter_middle(size)[:2],
-    )
 
 
 def colours_of(names: tuple[str, ...]) -> Mapping[str, tuple[int, int, int]]:
