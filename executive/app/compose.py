@@ -7,7 +7,7 @@ import importlib.util
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from functools import partial
-from typing import Literal, Protocol
+from typing import TYPE_CHECKING, Literal, Protocol
 
 import numpy as np
 
@@ -19,6 +19,10 @@ from executive.core.work import InlineWorker, ThreadWorker, Worker
 from executive.core.world import Cell, RestorableCell, StreamMessage
 from executive.engine.language.document import CellDocument
 from perception.cable.interfaces import CableVision
+
+if TYPE_CHECKING:
+    from simulation.shelf.cell import KinematicShelfCell
+    from simulation.shelf_cell.cell import ShelfCell
 
 VisionKind = Literal["learned", "classic"]
 
@@ -117,25 +121,32 @@ def _open_shelf_cell(document: CellDocument, scenario: Mapping[str, object], see
     from simulation.shelf_cell.cell import ShelfCell
 
     world = ShelfCell(document.config, scenario, seed)
-    services = {"rng": np.random.default_rng(seed), **workers(document.work)}
-    return _EquippedCell(world, services)
+    return _EquippedCell(world, _search_services(world, document, seed))
 
 
 def _open_kinematic_shelf(
     document: CellDocument, scenario: Mapping[str, object], seed: int
 ) -> Cell:
-    from executive.app.shelf_services import shelf_services
     from simulation.shelf.cell import KinematicShelfCell
 
     world = KinematicShelfCell(document.config, scenario, seed)
+    return _RestorableEquippedCell(world, _search_services(world, document, seed))
+
+
+def _search_services(
+    world: "ShelfCell | KinematicShelfCell", document: CellDocument, seed: int
+) -> Mapping[str, object]:
+    """Return what skills of a search use on top of a shelf cell's devices."""
+    from executive.app.shelf_services import shelf_services
+
     told = world.oracle_detector if world.settings.detector == "oracle" else None
-    affinity = world.settings.affinity
-    services = {
-        **shelf_services(world.stock, world.tool.shape, world.search_camera, told, affinity),
+    return {
+        **shelf_services(
+            world.stock, world.tool.shape, world.search_camera, told, world.settings.affinity
+        ),
         "rng": np.random.default_rng(seed),
         **workers(document.work),
     }
-    return _RestorableEquippedCell(world, services)
 
 
 def workers(work: Literal["inline", "beside"]) -> dict[str, Worker]:

@@ -1,6 +1,9 @@
 """Puts an arm with its controllers before a shelf: everything but the controllers is the same."""
 
+from collections.abc import Mapping
+
 from robots.descriptions.specs import kinova_spec
+from robots.interfaces import Floats
 from robots.shelf_arm import scene
 from robots.shelf_arm.driver import ShelfArmDriver
 from robots.shelf_arm.motions import ShelfMotions
@@ -15,8 +18,8 @@ def kinova_shelf_tool(
     size: scene.ShelfSize,
     shape: ToolShape,
     *,
+    viewpoints: Mapping[str, Floats],
     seed: int,
-    look_from_m: tuple[float, float] = (0.75, 0.2),
     settings: ShelfArmSettings | None = None,
 ) -> ArmShelfTool:
     """Return what skills ask of the Kinova before a shelf.
@@ -25,8 +28,8 @@ def kinova_shelf_tool(
         driver: Its controllers; the arm rests.
         size: The shelf.
         shape: What the tool needs of room.
+        viewpoints: T_shelf_camera by name, shape (4, 4); at home it is at `centre`.
         seed: Of everything random in planning.
-        look_from_m: Of the viewpoints, distance from the shelf's front and height.
         settings: Speeds and forces.
     """
     spec = kinova_spec(len(scene.HOME_RAD))
@@ -35,7 +38,7 @@ def kinova_shelf_tool(
         ShelfMotions(arm, driver, size, settings or ShelfArmSettings()),
         driver,
         shape,
-        scene.viewpoints(size, *look_from_m),
+        viewpoints,
         scene.T_TIP_CAMERA,
         scene.counter_middle(size)[:2],
     )

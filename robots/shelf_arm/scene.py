@@ -91,15 +91,3 @@ def closed_scene(shelf: ShelfSize) -> PlanningScene:
     size = (shelf.width_m, shelf.depth_m, shelf.height_m)
     inside = StaticBox("shelf_contents", (0.5 * size[0], 0.5 * size[1], 0.5 * size[2]), size)
     return PlanningScene(arm_placement(shelf), (*boards(shelf), inside))
-
-
-def viewpoints(shelf: ShelfSize, distance_m: float, height_m: float) -> dict[str, Floats]:
-    """Return T_shelf_camera of each named viewpoint, shape (4, 4): level, looking straight in."""
-    places = {"left": 0.25, "centre": 0.5, "right": 0.75}
-    poses = {}
-    for name, share in places.items():
-        T_shelf_camera = np.eye(4)
-        T_shelf_camera[:3, :3] = LEVEL_TOOL
-        T_shelf_camera[:3, 3] = (share * shelf.width_m, -distance_m, height_m)
-        poses[name] = T_shelf_camera
-    return poses

@@ -1,24 +1,26 @@
 """The shelf cell with physics: a Kinova with a bluction tool before a shelf full of boxes."""
 
-import colorsys
 import threading
 from collections.abc import Iterable, Mapping
 
 import numpy as np
 
 from executive.core.world import StreamMessage
+from perception.camera import CameraModel
 from perception.shelf.types import Shelf
 from robots.descriptions.kinova import kinova_joint_names
 from robots.shelf_arm import scene as place
 from robots.shelf_arm.build import kinova_shelf_tool
 from robots.shelf_tool import ToolShape
 from simulation.clock import SimClock
-from simulation.shelf.cameras import front_camera
+from simulation.shelf.cameras import front_camera, viewpoint_cameras
 from simulation.shelf.scenes import Scene, SceneRules, draw_scene
+from simulation.shelf.stocking import stock_of
 from simulation.shelf.taxonomy import shipped_domain
 from simulation.shelf_cell.boxes import Matter, weighed
 from simulation.shelf_cell.camera import ToolCamera
 from simulation.shelf_cell.config import ShelfCellConfig, ShelfScenario
+from simulation.shelf_cell.oracle import OracleDetector
 from simulation.shelf_cell.seeing import visible_shares
 from simulation.shelf_cell.streams import joint_states_json, scene_json
 from simulation.shelf_cell.truth import ShelfTruth, shelf_truth
@@ -39,7 +41,10 @@ class ShelfCell:
         tool: Does what skills ask of the arm.
         camera: Sees from the tool.
         driver: Controllers of the arm.
-        devices: Clock, tool, camera and driver, by name.
+        stock: What is known of the products beforehand.
+        search_camera: The camera at the middle viewpoint.
+        settings: How the cell was set up.
+        devices: Clock, tool, camera, driver and stock, by name.
     """
 
     def __init__(
@@ -56,11 +61,15 @@ class ShelfCell:
             InputError: A key or value is not known, or no such scene can be made.
         """
         settings = read_settings(ShelfCellConfig, config, "cell config")
-        self._settings = settings
+        self.settings = settings
         wanted = read_settings(ShelfScenario, scenario, "scenario")
-        chances = np.random.SeedSequence(seed).spawn(3)
-        matter_rng, force_rng, camera_rng = (np.random.default_rng(chance) for chance in chances)
-        self._scene = _scene(wanted, np.random.default_rng(seed))
+        # The first is that of the scene in every world, so that seeds give the same scenes.
+        seeds = np.random.SeedSequence(seed).spawn(4)
+        scene_rng, matter_rng, force_rng, camera_rng = map(np.random.default_rng, seeds)
+        shelf = Shelf()
+        self.search_camera = front_camera(shelf, settings.camera.width_px)
+        self._scene = _scene(wanted, shelf, self.search_camera, scene_rng)
+        self.stock = stock_of(shipped_domain(wanted.domain), self._scene)
         boxes = weighed(
             self._scene.names,
             self._scene.boxes,
@@ -75,9 +84,12 @@ class ShelfCell:
             size,
             ToolShape(blade_m=settings.tool.lane_m, overlap_m=_OVERLAP_M, gap_m=0.0),
             seed=seed,
-            look_from_m=(settings.camera.distance_m, settings.camera.height_m),
+            viewpoints={
+                name: camera.T_world_camera
+                for name, camera in viewpoint_cameras(shelf, self.search_camera).items()
+            },
         )
-        self._colours = colours_of(self._scene.names)
+        self._colours = {product.name: product.colour for product in self.stock.products}
         self.camera = ToolCamera(
             self._world.physics,
             self._colours,
@@ -97,12 +109,18 @@ class ShelfCell:
             "camera": self.camera,
             "tool": self.tool,
             "driver": self.driver,
+            "stock": self.stock,
         }
         self._joint_states = Stream(
             "/joint_states", "JointStates", settings.physics.joint_states_hz
         )
         self._scenes = Stream("/scene", "ShelfScene", settings.physics.scene_hz)
         self._record()
+
+    @property
+    def oracle_detector(self) -> OracleDetector:
+        """A detector that is told the truth."""
+        return OracleDetector(self._world.physics, self.stock.names)
 
     @property
     def step_s(self) -> float:
@@ -156,16 +174,9 @@ class ShelfCell:
 
     def truth(self) -> ShelfTruth:
         """Score the shelf as it stands now."""
-        physics, shelf = self._world.physics, self._scene.shelf
-        config = self._settings.camera
-        watching = front_camera(shelf, config.width_px, config.distance_m, config.height_m)
-        return shelf_truth(
-            self._scene.target,
-            physics.box_names,
-            physics.box_poses(),
-            visible_shares(physics, watching),
-            shelf,
-        )
+        physics = self._world.physics
+        shares = visible_shares(physics, self.search_camera)
+        return shelf_truth(self._scene, physics.box_poses(), shares)
 
     def _step(self) -> None:
         self._world.step()
@@ -180,19 +191,12 @@ class ShelfCell:
             self._scenes.add(now_s, scene_json(world.physics, self._colours, held))
 
 
-def _scene(wanted: ShelfScenario, rng: np.random.Generator) -> Scene:
+def _scene(
+    wanted: ShelfScenario, shelf: Shelf, camera: CameraModel, rng: np.random.Generator
+) -> Scene:
     rules = SceneRules(wanted.count, wanted.organisation, wanted.scale)
-    return draw_scene(shipped_domain(wanted.domain), rules, rng)
+    return draw_scene(shipped_domain(wanted.domain), rules, rng, shelf, camera)
 
 
 def _size(shelf: Shelf) -> place.ShelfSize:
     return place.ShelfSize(shelf.width_m, shelf.depth_m, shelf.height_m)
-
-
-def colours_of(names: tuple[str, ...]) -> Mapping[str, tuple[int, int, int]]:
-    """Return a colour for each name, as different as can be."""
-    hues = [colorsys.hsv_to_rgb(n / len(names), 0.9, 0.9) for n in range(len(names))]
-    return {
-        name: (round(255 * r), round(255 * g), round(255 * b))
-        for name, (r, g, b) in zip(names, hues, strict=True)
-    }

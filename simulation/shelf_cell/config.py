@@ -1,6 +1,6 @@
 """What can be set about the shelf cell: light to import, checked before anything is built."""
 
-from typing import Annotated
+from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
@@ -19,8 +19,6 @@ class CameraConfig(_Document):
 
     Attributes:
         width_px: Image width; the height is three quarters of it.
-        distance_m: Of the viewpoints from the front of the shelf.
-        height_m: Of the viewpoints above the floor of the shelf.
         depth_noise_m: Standard deviation of measured depth.
         lost_share: Share of pixels without depth.
         colour_noise: Standard deviation of each colour, in grey values.
@@ -30,8 +28,6 @@ class CameraConfig(_Document):
     """
 
     width_px: Annotated[int, Field(ge=64, le=1280)] = 160
-    distance_m: Annotated[float, Field(ge=0.3, le=0.9)] = 0.75
-    height_m: Annotated[float, Field(gt=0.0, le=0.5)] = 0.2
     depth_noise_m: NotNegative = 0.001
     lost_share: Share = 0.01
     colour_noise: NotNegative = 2.0
@@ -100,12 +96,18 @@ class ShelfCellConfig(_Document):
         tool: The bluction tool.
         matter: What the boxes are made of.
         physics: How finely time is cut.
+        detector: `colour` reads products by the colours of their boxes; `oracle` is told by the
+            world what each pixel shows, for experiments with nothing to detect.
+        affinity: `stored` for the matrix that ships for the domain, `even` for none, `taxonomy`
+            for the oracle that the scenes are made from.
     """
 
     camera: CameraConfig = CameraConfig()
     tool: ToolConfig = ToolConfig()
     matter: MatterConfig = MatterConfig()
     physics: PhysicsConfig = PhysicsConfig()
+    detector: Literal["colour", "oracle"] = "colour"
+    affinity: Literal["stored", "even", "taxonomy"] = "stored"
 
 
 class ShelfScenario(_Document):

@@ -5,8 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from perception.shelf.types import Floats, Shelf
+from perception.shelf.types import Floats
 from simulation.poses import pose_matrices
+from simulation.shelf.scenes import Scene
 
 # A box that leans by more lies on another face, or against something.
 TOPPLED_RAD = 0.5
@@ -16,21 +17,29 @@ _FALLEN_M = -0.05
 
 @dataclass(frozen=True, slots=True)
 class ShelfTruth:
-    """The shelf as it stands.
+    """How a search has ended, and how the shelf stands.
 
     Attributes:
-        target: Name of what was to be found.
-        visible_share: How much of it shows from the middle viewpoint, in [0, 1].
-        handed_over: Whether it stands on the counter.
-        toppled: Names of boxes that no longer stand as they stood.
-        fallen: Names of boxes that have fallen out of the shelf.
+        target: What was to be found.
+        found: Whether it was taken out, or can be seen from the middle viewpoint.
+        visible_share: How much of it shows from there, in [0, 1].
+        retrieved: Whether it stands on the counter.
+        wrong: What else stands there.
+        toppled: How many boxes no longer stand as they stood.
+        disorder_m: How far boxes in the shelf are from where they were at first, on average.
+        toppled_names: Which boxes those are.
+        fallen: Which boxes have fallen out of the shelf.
         poses: Where everything is: position [m] and quaternion xyzw of each centre.
     """
 
     target: str
+    found: bool
     visible_share: float
-    handed_over: bool
-    toppled: tuple[str, ...]
+    retrieved: bool
+    wrong: tuple[str, ...]
+    toppled: int
+    disorder_m: float
+    toppled_names: tuple[str, ...]
     fallen: tuple[str, ...]
     poses: Mapping[str, tuple[float, ...]]
 
@@ -42,30 +51,34 @@ def lean_rad(quats_xyzw: Floats) -> Floats:
     return angles
 
 
-def shelf_truth(
-    target: str,
-    names: tuple[str, ...],
-    poses: Floats,
-    shares: Floats,
-    shelf: Shelf,
-) -> ShelfTruth:
+def shelf_truth(scene: Scene, poses: Floats, shares: Floats) -> ShelfTruth:
     """Score a shelf.
 
     Args:
-        target: Name of what was to be found.
-        names: Of all boxes.
-        poses: Position [m] and quaternion xyzw of each, shape (N, 7).
+        scene: What stood there at first.
+        poses: Position [m] and quaternion xyzw of each box, in the scene's order, shape (N, 7).
         shares: How much of each shows from the middle viewpoint, shape (N,).
-        shelf: The shelf.
     """
-    leans = lean_rad(poses[:, 3:])
-    which = names.index(target)
-    on_counter = poses[which, 0] < 0.0 and 0.0 < poses[which, 1] < shelf.depth_m
+    names = np.array(scene.names)
+    which = scene.names.index(scene.target)
+    low = poses[:, 2] < _FALLEN_M
+    outside = (poses[:, 0] < 0.0) & (poses[:, 1] > 0.0) & ~low
+    leaning = lean_rad(poses[:, 3:]) > TOPPLED_RAD
+    first = np.array([(box.x_m, box.y_m) for box in scene.boxes])
+    away_m = np.hypot(*(poses[:, :2] - first).T)[~outside & ~low]
+    taken = names[outside].tolist()
     return ShelfTruth(
-        target,
-        float(shares[which]),
-        bool(on_counter and poses[which, 2] > 0.0),
-        tuple(name for name, lean in zip(names, leans, strict=True) if lean > TOPPLED_RAD),
-        tuple(name for name, z in zip(names, poses[:, 2], strict=True) if z < _FALLEN_M),
-        {name: tuple(map(float, pose)) for name, pose in zip(names, poses, strict=True)},
+        target=scene.target,
+        found=bool(outside[which] or shares[which] > 0.0),
+        visible_share=round(float(shares[which]), 4),
+        retrieved=bool(outside[which]),
+        wrong=tuple(name for name in taken if name != scene.target),
+        toppled=int(leaning.sum()),
+        disorder_m=round(float(away_m.mean()), 4) if len(away_m) else 0.0,
+        toppled_names=tuple(names[leaning].tolist()),
+        fallen=tuple(names[low].tolist()),
+        poses={
+            name: tuple(np.round(pose, 5).tolist())
+            for name, pose in zip(scene.names, poses, strict=True)
+        },
     )
