@@ -17,8 +17,8 @@ from robots.placement import (
     table_scene,
 )
 
-BOXES = 4
-BOX_SIZE_M = ((0.04, 0.04, 0.04), (0.10, 0.10, 0.16))
+BOXES = 5
+BOX_SIZE_M = ((0.04, 0.04, 0.04), (0.10, 0.10, 0.22))
 GOAL_HEIGHT_M = (0.02, 0.10)
 OPENINGS_M: dict[Arm, float] = dict.fromkeys(ARMS, 0.05)
 # Of two arms at once, each has its own half of the table.

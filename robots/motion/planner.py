@@ -59,7 +59,7 @@ class PlannerSettings:
     goal_solutions: int = 6
     path_checks: int = 20_000
     path_goals: int = 3
-    corner_tries: int = 40
+    corner_tries: int = 100
     line_timings: int = 4
     speed_scale: float = 1.0
     line_speed_m_s: float = 0.25
