@@ -38,7 +38,7 @@ $(STAMP): pyproject.toml constraints.txt
 	fi
 	@echo "setup: installing into $(VENV), a few minutes the first time"
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check \
-		--constraint constraints.txt --editable '.[campaign,dev,learn,rerun]'
+		--constraint constraints.txt --editable '.[campaign,dev,learn,opcua,rerun,serve]'
 	@touch $(STAMP)
 
 demo: setup ## Untie a knotted cable with the simulated YuMi, and record it

@@ -34,10 +34,10 @@ def groot(
 
     It answers out of the recording, so a run that has ended looks the same.
     """
+    from executive.core.network import is_loopback
     from executive.inspector.groot.answers import Answers
     from executive.inspector.groot.run_view import RunView
     from executive.inspector.groot.server import GrootServer
-    from executive.inspector.web.access import is_loopback
 
     if speed is not None and not speed > 0.0:
         raise InputError(f"--speed {speed:g}: expected a factor above 0")

@@ -28,7 +28,7 @@ def serve_page(
         InputError: It is no recording, or the port cannot be had.
     """
     from executive.app.views import write_html
-    from executive.inspector.web.access import is_loopback
+    from executive.core.network import is_loopback
     from executive.inspector.web.server import PageServer, application
     from executive.inspector.web.session import Session
 

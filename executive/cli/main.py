@@ -41,6 +41,7 @@ _COMMANDS: Mapping[str, str] = MappingProxyType(
         "whatif": "executive.cli.cmd_whatif",
         "cover": "executive.cli.cmd_cover",
         "campaign": "executive.cli.cmd_campaign",
+        "serve": "executive.cli.cmd_serve",
         "groot": "executive.cli.cmd_groot",
         "skills": "executive.cli.cmd_skills",
         "tree": "executive.cli.cmd_tree",

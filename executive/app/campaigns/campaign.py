@@ -11,8 +11,8 @@ from executive.app.campaigns.cluster import Cluster
 from executive.app.campaigns.document import CampaignDocument
 from executive.app.campaigns.folder import CampaignFolder, CampaignPlan
 from executive.app.campaigns.jobs import Assignment, RunRecord
-from executive.app.campaigns.one_run import load, settings_of
 from executive.app.campaigns.variants import jobs, variants
+from executive.app.missions import load, settings_of
 from executive.core.locks import FileLock
 from executive.engine.loading.loader import Mission
 from executive.engine.loading.packages import PATH_VARIABLE
@@ -51,7 +51,7 @@ class Campaign:
         self.folder = CampaignFolder(folder.resolve())
         self._mission = load(_mission_file(document.mission, beside))
         for job in jobs(document.model_copy(update={"seeds": (0,)})):
-            settings_of(job, self._mission)
+            settings_of(self._mission, job.settings)
 
     @property
     def count(self) -> int:

@@ -26,12 +26,14 @@ class SeedRange(Model):
 class Draw(Model):
     """How a value is drawn: exactly one of these."""
 
-    uniform: tuple[Bound, Bound] | None = Field(None, description="Lowest and highest.")
+    uniform: tuple[Bound, Bound] | None = Field(default=None, description="Lowest and highest.")
     log_uniform: tuple[Bound, Bound] | None = Field(
-        None, description="Lowest and highest, both above 0; its logarithm is uniform."
+        default=None, description="Lowest and highest, both above 0; its logarithm is uniform."
     )
-    integers: tuple[int, int] | None = Field(None, description="Lowest and highest, both drawn.")
-    choice: Values | None = Field(None, description="Any of these, each as likely.")
+    integers: tuple[int, int] | None = Field(
+        default=None, description="Lowest and highest, both drawn."
+    )
+    choice: Values | None = Field(default=None, description="Any of these, each as likely.")
 
     @model_validator(mode="after")
     def _one_way(self) -> "Draw":
@@ -58,11 +60,11 @@ class Limits(Model):
     """What a run may take; one that takes more is ended and loses only itself."""
 
     timeout_s: Seconds | None = Field(
-        None, description="On the cell's clock [s]; that of the mission otherwise."
+        default=None, description="On the cell's clock [s]; that of the mission otherwise."
     )
-    wall_s: Seconds = Field(600.0, description="On the machine's clock [s].")
+    wall_s: Seconds = Field(default=600.0, description="On the machine's clock [s].")
     memory_mb: Annotated[float, Field(strict=True, gt=0.0)] | None = Field(
-        None, description="Memory of the run's process [MB]; no limit otherwise."
+        default=None, description="Memory of the run's process [MB]; no limit otherwise."
     )
 
 
@@ -82,11 +84,11 @@ class CampaignDocument(Model):
     )
     sample: Sample | None = None
     list_: tuple[dict[Key, Any], ...] = Field(
-        (), alias="list", description="Settings that belong together, one entry a variant."
+        default=(), alias="list", description="Settings that belong together, one entry a variant."
     )
-    limits: Limits = Field(default_factory=lambda: Limits.model_validate({}))
+    limits: Limits = Limits()
     keep: Literal["failed", "all", "none"] = Field(
-        "failed", description="Which recordings stay when their run is over."
+        default="failed", description="Which recordings stay when their run is over."
     )
 
     @property

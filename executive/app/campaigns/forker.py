@@ -17,7 +17,8 @@ from pathlib import Path
 from typing import IO, NoReturn
 
 from executive.app.campaigns.jobs import Assignment, Ending, Job, RunRecord
-from executive.app.campaigns.one_run import load, lost, run_job
+from executive.app.campaigns.one_run import lost, run_job
+from executive.app.missions import load
 from executive.core.errors import InputError
 from executive.engine.faults.processes import GRACE_S
 from executive.engine.faults.tether import tie_to_stdin

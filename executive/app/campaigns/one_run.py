@@ -8,34 +8,12 @@ from pathlib import Path
 from pydantic import JsonValue
 
 from executive.app.campaigns.jobs import Assignment, Ending, Job, RunRecord
-from executive.app.settings import Setting, Settings, settled
+from executive.app.missions import settings_of
 from executive.core.errors import InputError
-from executive.engine.loading.loader import Mission, load_mission
+from executive.engine.loading.loader import Mission
 from executive.engine.running.control import RunControl, stopped_by_signals
 
 RECORDINGS = "recordings"
-
-
-def load(mission: str | Path) -> Mission:
-    """Load a mission with the skills and types of this installation.
-
-    Raises:
-        InputError: What is wrong with it.
-    """
-    from executive.app.catalogue import port_types, skills
-
-    return load_mission(mission, skills=skills(), types=port_types())
-
-
-def settings_of(job: Job, mission: Mission) -> Settings:
-    """Return what a run is set to.
-
-    Raises:
-        InputError: A key that is neither an input nor a part of the scenario.
-    """
-    where = f"{mission.name}: set"
-    settings = [Setting(key, value, where) for key, value in job.settings.items()]
-    return settled(settings, tuple(mission.document.in_), mission.document.scenario)
 
 
 def run_job(mission: Mission, assignment: Assignment, job: Job) -> RunRecord:
@@ -74,7 +52,7 @@ def _run(
     from executive.engine.nodes.builder import build
     from executive.engine.running.mission_run import RunPlan, run_mission
 
-    settings, document = settings_of(job, mission), mission.document
+    settings, document = settings_of(mission, job.settings), mission.document
     timeout_s = document.timeout_s if assignment.timeout_s is None else assignment.timeout_s
     plan = RunPlan(mission, job.seed, settings.inputs, settings.scenario, timeout_s, recording)
     with closing(open_cell(mission.cell, settings.scenario, job.seed)) as cell:

@@ -42,6 +42,17 @@ def socket_path(recording: Path) -> Path:
     Raises:
         InputError: The folder belongs to somebody else.
     """
+    # A hash, because the path of a socket may be about 100 bytes long and no longer.
+    name = hashlib.sha256(str(recording.resolve()).encode()).hexdigest()[:24]
+    return runtime_folder() / f"{name}.sock"
+
+
+def runtime_folder() -> Path:
+    """Return the folder of what lives as long as a process; it is made, for this user alone.
+
+    Raises:
+        InputError: The folder belongs to somebody else.
+    """
     folder = Path(tempfile.gettempdir()) / f"cellwright-{os.getuid()}"
     folder.mkdir(mode=0o700, exist_ok=True)
     status = folder.lstat()
@@ -50,9 +61,7 @@ def socket_path(recording: Path) -> Path:
             f"{folder}: commands to a cell go through this folder; expected a folder that only "
             "this user may enter; try removing it"
         )
-    # A hash, because the path of a socket may be about 100 bytes long and no longer.
-    name = hashlib.sha256(str(recording.resolve()).encode()).hexdigest()[:24]
-    return folder / f"{name}.sock"
+    return folder
 
 
 class CommandServer:

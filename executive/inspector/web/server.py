@@ -212,8 +212,17 @@ def _json(document: object) -> Response:
 class PageServer:
     """Serves an application until it is stopped."""
 
-    def __init__(self, app: Starlette, host: str, port: int) -> None:
+    def __init__(
+        self, app: Starlette, host: str, port: int, *, most_at_once: int | None = None
+    ) -> None:
         """Take a port; 0 takes a free one.
+
+        Args:
+            app: The application.
+            host: Address to listen on.
+            port: The port.
+            most_at_once: Connections and requests that are served at once; those beyond are
+                told to come back.
 
         Raises:
             InputError: The port cannot be had.
@@ -227,7 +236,13 @@ class PageServer:
         except OSError as error:
             self._socket.close()
             raise InputError(f"--port {port}: cannot listen on {host}; got {error}") from None
-        config = uvicorn.Config(app, log_level="warning", ws="websockets-sansio", lifespan="off")
+        config = uvicorn.Config(
+            app,
+            log_level="warning",
+            ws="websockets-sansio",
+            lifespan="off",
+            limit_concurrency=most_at_once,
+        )
         self._server = uvicorn.Server(config)
 
     @property

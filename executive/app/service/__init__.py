@@ -1,0 +1,1 @@
+"""A cell as a service: missions come in one at a time, over HTTP or OPC UA."""
