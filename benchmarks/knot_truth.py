@@ -1,11 +1,19 @@
 """Where the first knot of a cable begins, from its line in space alone.
 
-Asked is the piece of the cable in which the knot was tied, by two definitions. By topology: the
-shortest first part that is knotted when closed over everything, and of this the shortest last
-part that still is; it begins with an undercrossing, as what begins on top can be taken off. By
-the thesis's rule (section 3.3): crossings are cancelled, then under ... over is looked for.
-Where they differ, which few knots allow, either is right.
+Asked is first the piece of the cable in which the knot was tied, by two definitions. By
+topology: the shortest first part that is knotted when closed over everything, and of this the
+shortest last part that still is; it begins with an undercrossing, as what begins on top can be
+taken off. By the thesis's rule (section 3.3): crossings are cancelled, then under ... over is
+looked for. Where they differ, which few knots allow, either is right.
+
+Who sees the cable does not know in which piece somebody has tied. Where the rest of the cable
+lies on the knot, the same knot may be made with its crossings instead. So the whole cable is
+asked, too: which first part is knotted and stays so, however much more of the cable is added,
+and from where on, likewise. In one of 40 scenes this names another crossing, and is right as
+well.
 """
+
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,13 +39,37 @@ def first_undercrossings(nodes: Floats, tied: tuple[float, float]) -> Floats:
         nodes: Centre line from the traced end on, z up, shape (N, 3).
         tied: Between which nodes the knot was tied.
     """
-    strand = part(curve_crossings(nodes), *tied)
+    whole = curve_crossings(nodes)
+    strand = part(whole, *tied)
     piece = first_piece(strand)
     if piece is None:
         return np.empty((0, 2))
     begins = [piece[0], *(begin.arc for begin, _ in knot_intervals(visits_of(strand))[:1])]
+    return np.vstack([_places(strand, begins), _places(whole, lasting_begin(whole))])
+
+
+def _places(strand: Strand, numbers: Sequence[float]) -> Floats:
     index = np.arange(len(strand.points), dtype=float)
-    return np.column_stack([np.interp(begins, index, axis) for axis in strand.points.T])
+    return np.column_stack([np.interp(numbers, index, axis) for axis in strand.points.T])
+
+
+def lasting_begin(strand: Strand) -> list[float]:
+    """Return where the first part begins that is knotted and stays so; empty without a knot.
+
+    Places are node numbers. Parts are cut between visits of crossings.
+    """
+    visits = visits_of(strand)
+    if not is_knotted(strand):
+        return []
+    arcs = [visit.arc for visit in visits]
+    cuts = [0.0, *np.convolve(arcs, [0.5, 0.5], "valid"), len(strand.points) - 1.0]
+    end = len(visits)
+    while is_knotted(part(strand, 0.0, cuts[end - 1])):
+        end -= 1
+    begin = 0
+    while is_knotted(part(strand, cuts[begin + 1], cuts[end])):
+        begin += 1
+    return [next(visit.arc for visit in visits[begin:] if not visit.over)]
 
 
 def first_piece(strand: Strand) -> tuple[float, float] | None:

@@ -12,10 +12,11 @@ from perception.cable.types import Crossing, Points, Trace
 SPACING_PX = 3.0
 REACH_PX = 24.0
 PATH_STEP_PX = 1.0
-# Two centre lines that lie on each other cross many times by chance.
-MERGE_PX = 14.0
+# Two centre lines that lie on each other cross many times by chance. Strands of a tight knot
+# cross each other again nearly two widths on, and no sooner: they are as thick as that.
+MERGE_WIDTHS = 1.4
 # A strand cannot cross itself within this length of cable.
-SHORTEST_LOOP_PX = 16.0
+SHORTEST_LOOP_WIDTHS = 3.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -40,25 +41,30 @@ class CrossingSite:
     paths: Points
 
 
-def find_sites(traces: Sequence[Trace]) -> tuple[CrossingSite, ...]:
-    """Return all crossings of the traces in the order of the first, then the second, ..."""
+def find_sites(traces: Sequence[Trace], width_px: float) -> tuple[CrossingSite, ...]:
+    """Return all crossings of the traces in the order of the first, then the second, ...
+
+    Args:
+        traces: The traces.
+        width_px: Width of the cables.
+    """
     lines = [resample(trace.points_px, SPACING_PX) for trace in traces]
     sites = [
         site
         for i in range(len(lines))
         for j in range(i, len(lines))
-        for site in _sites_between(lines, i, j)
+        for site in _sites_between(lines, i, j, width_px)
     ]
     return tuple(sorted(sites, key=lambda site: (site.traces, site.arcs)))
 
 
-def _sites_between(lines: list[Points], i: int, j: int) -> list[CrossingSite]:
+def _sites_between(lines: list[Points], i: int, j: int, width_px: float) -> list[CrossingSite]:
     a, b, turn = intersections(lines[i], lines[j])
     arcs_a, arcs_b = arc_lengths(lines[i]), arc_lengths(lines[j])
     at_a = np.interp(a, np.arange(len(arcs_a)), arcs_a)
     at_b = np.interp(b, np.arange(len(arcs_b)), arcs_b)
     if i == j:
-        once = at_b - at_a > SHORTEST_LOOP_PX
+        once = at_b - at_a > SHORTEST_LOOP_WIDTHS * width_px
         at_a, at_b, turn = at_a[once], at_b[once], turn[once]
     return [
         CrossingSite(
@@ -69,7 +75,7 @@ def _sites_between(lines: list[Points], i: int, j: int) -> list[CrossingSite]:
             int(turn[k]),
             np.stack([_path(lines[i], arcs_a, at_a[k]), _path(lines[j], arcs_b, at_b[k])]),
         )
-        for k in _merge(at_a, at_b, turn)
+        for k in _merge(at_a, at_b, turn, MERGE_WIDTHS * width_px)
     ]
 
 
@@ -79,7 +85,7 @@ def _path(line: Points, arcs: Points, at_px: float) -> Points:
 
 
 def _merge(
-    at_a: Points, at_b: Points, turn: "np.ndarray[tuple[int], np.dtype[np.int64]]"
+    at_a: Points, at_b: Points, turn: "np.ndarray[tuple[int], np.dtype[np.int64]]", near_px: float
 ) -> list[int]:
     """Return which crossings stay when those that lie on each other are merged.
 
@@ -96,7 +102,7 @@ def _merge(
                 k
                 for k in left
                 if any(
-                    abs(at_a[k] - at_a[m]) < MERGE_PX and abs(at_b[k] - at_b[m]) < MERGE_PX
+                    abs(at_a[k] - at_a[m]) < near_px and abs(at_b[k] - at_b[m]) < near_px
                     for m in group
                 )
             ]

@@ -2,14 +2,16 @@
 
 The thesis's rule names places that look like knots. Here a piece of cable counts only when
 its diagram, closed over everything, is proved to be knotted; the shortest such pieces are
-the knots, and the rule then says how each is entered and closed.
+the knots. As what lies on top at either end of a piece can be taken off, each begins with an
+undercrossing.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from perception.cable.belief import NOTHING_KNOWN, knotted_share, reading_of, told
 from perception.cable.crossings import strand_of
 from perception.cable.grasp_points import (
     CablePixels,
@@ -21,6 +23,7 @@ from perception.cable.grasp_points import (
 )
 from perception.cable.grasp_room import RoomPolicy
 from perception.cable.grasp_tusk import TuskPolicy
+from perception.cable.outcomes import outcomes
 from perception.cable.polyline import arc_lengths, point_at
 from perception.cable.topology import (
     Knottedness,
@@ -29,11 +32,14 @@ from perception.cable.topology import (
     classify_diagram,
     close_over,
 )
-from perception.cable.topology.rule import Visit, cancel, closing_visit
-from perception.cable.types import Crossing, Knot, Points, Trace
+from perception.cable.topology.names import UNKNOT, UNKNOWN
+from perception.cable.topology.rule import Visit
+from perception.cable.types import Crossing, Knot, Points, Reading, Trace
 
 # A piece is cut this far beyond its first and last crossing.
 MARGIN_PX = 4.0
+# Where all crossings are at least this sure, they are taken as they are.
+SURE = 0.99
 
 
 def find_knots(
@@ -107,10 +113,38 @@ def knot_intervals(
     trace: Trace, index: int, crossings: Sequence[Crossing]
 ) -> list[tuple[float, float]]:
     """Return for each knot of a trace where it is entered below and closed on top."""
-    own = [c for c in crossings if c.trace_over == index and c.trace_under == index]
+    own = likeliest_together(reading_of(trace, index, crossings))
     visits = visits_of(own)
     search = _Search(strand_of(trace, index, own), visits)
     return [_entry_and_close(visits, first, last) for first, last in search.knotted_pieces()]
+
+
+def likeliest_together(reading: Reading) -> tuple[Crossing, ...]:
+    """Return a reading's crossings as they lie in its likeliest diagram.
+
+    The answers that are likeliest one by one may make a knot that all others together speak
+    against, or the other way round. What is believed of the knot is decided first, then the
+    likeliest combination that agrees with it.
+    """
+    if all(crossing.probability >= SURE for crossing in reading.crossings):
+        return reading.crossings
+    listed = outcomes(reading)
+    knotted = knotted_share(told(listed)) > NOTHING_KNOWN
+    for flipped, name in zip(listed.flipped, listed.knots, strict=True):
+        if name != UNKNOWN and (name != UNKNOT) == knotted:
+            pairs = zip(listed.crossings, flipped, strict=True)
+            return tuple(_flipped(crossing) if flip else crossing for crossing, flip in pairs)
+    return reading.crossings
+
+
+def _flipped(crossing: Crossing) -> Crossing:
+    return replace(
+        crossing,
+        trace_over=crossing.trace_under,
+        arc_over=crossing.arc_under,
+        trace_under=crossing.trace_over,
+        arc_under=crossing.arc_over,
+    )
 
 
 def visits_of(crossings: Sequence[Crossing]) -> list[Visit]:
@@ -131,11 +165,18 @@ class _Search:
     visits: Sequence[Visit]
 
     def knotted_pieces(self) -> list[tuple[int, int]]:
-        """Return the first and last visit of each knotted piece, in the order of the strand."""
+        """Return the first and last visit of each knotted piece, in the order of the strand.
+
+        A knot is complete where the strand up to there is knotted and stays so: a noose is
+        knotted for a while, until the strand leaves it again. It begins in the same way, seen
+        from there.
+        """
         found, begin, last = [], 0, len(self.visits) - 1
         while begin < last and self.is_knotted(begin, last):
-            end = next(k for k in range(begin + 1, last + 1) if self.is_knotted(begin, k))
-            first = next(k for k in range(end - 1, begin - 1, -1) if self.is_knotted(k, end))
+            ends = range(last - 1, begin, -1)
+            end = 1 + next((k for k in ends if not self.is_knotted(begin, k)), begin)
+            starts = range(begin + 1, end)
+            first = next((k for k in starts if not self.is_knotted(k, end)), end) - 1
             found.append((first, end))
             begin = end + 1
         return found
@@ -168,14 +209,11 @@ def piece(strand: Strand, begin: float, end: float) -> Strand:
 
 
 def _entry_and_close(visits: Sequence[Visit], first: int, last: int) -> tuple[float, float]:
-    """Return where a knot is entered by an undercrossing and closed by its overcrossing.
+    """Return where a knotted piece is entered by an undercrossing, and that crossing's other visit.
 
-    The thesis's rule is asked from the first visit of the knotted piece on, about the crossings
-    that are left after cancelling, else about all; else the whole piece is the answer.
+    The thesis's rule asks that of the crossings that are left after cancelling, which may have
+    lost the one that begins the knot to a strand that lies over it.
     """
-    begin, end = visits[first].arc, visits[last].arc
-    for candidates in (cancel(visits), list(visits)):
-        for k, visit in enumerate(candidates):
-            if begin <= visit.arc <= end and (close := closing_visit(candidates, k)) is not None:
-                return visit.arc, close.arc
-    return begin, end
+    entry = next(visit for visit in visits[first:] if not visit.over)
+    close = next(v for v in visits[first:] if v.crossing == entry.crossing and v is not entry)
+    return entry.arc, min(close.arc, visits[last].arc)

@@ -87,7 +87,7 @@ class EvidenceClassifier(ABC):
             return ()
         return tuple(
             decide(site, probability(self.evidence(image, observation.mask, site), self._gain))
-            for site in find_sites(traces)
+            for site in find_sites(traces, observation.mask.width_px)
         )
 
     @abstractmethod

@@ -54,10 +54,13 @@ class LearnedClassifier:
 
     def judge(self, image: GreyImage, traces: Sequence[Trace]) -> tuple[JudgedSite, ...]:
         """Return both beliefs about every crossing of the traces, all in one pass."""
-        sites = find_sites(traces)
+        if not traces:
+            return ()
+        width_px = self._width(image, traces)
+        sites = find_sites(traces, width_px)
         if not sites:
             return ()
-        scaled = scale_for_ribbons(image, self._width(image, traces))
+        scaled = scale_for_ribbons(image, width_px)
         paths = np.array(
             [[_path(strand, scaled.scale) for strand in passes_of(site, traces)] for site in sites]
         )

@@ -34,12 +34,13 @@ class ThesisClassifier:
 
     def classify(self, image: GreyImage, traces: Sequence[Trace]) -> tuple[Crossing, ...]:
         """Return every crossing; see `CrossingClassifier.classify`."""
-        sites = find_sites(traces)
+        if not traces:
+            return ()
+        width_px = width_under(image, [trace.points_px for trace in traces])
+        sites = find_sites(traces, width_px)
         if not sites:
             return ()
-        scaled = scale_image(
-            image, width_under(image, [trace.points_px for trace in traces]), WIDTH
-        )
+        scaled = scale_image(image, width_px, WIDTH)
         visits = [_visit(scaled, strand) for site in sites for strand in passes_of(site, traces)]
         scores = self._scores(np.stack(visits)).reshape(-1, 2).tolist()
         return tuple(

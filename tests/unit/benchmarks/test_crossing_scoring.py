@@ -27,7 +27,7 @@ def test_what_is_right_one_way_round_is_wrong_the_other(source):
     scenes = drawn_scenes(3, 5) if source == "drawn" else settled_scenes(source, 3, 2)
     total = 0
     for scene in scenes:
-        found = [decide(site, 0.9) for site in find_sites(scene.traces)]
+        found = [decide(site, 0.9) for site in find_sites(scene.traces, scene.width_px)]
         there = [answer.right for answer in scored(scene, found)]
         back = [answer.right for answer in scored(scene, [_turned(item) for item in found])]
         assert there == [not right for right in back]
@@ -52,10 +52,10 @@ def test_labels_say_which_cable_is_on_top():
     lines = ([[2.0, 30.0], [58.0, 30.0]], [[30.0, 2.0], [30.0, 58.0]])
     traces = [Trace(np.array(line), TraceEnd.EDGE, 1.0) for line in lines]
     image = LabelledImage(np.zeros((60, 60, 3), np.uint8), labels)
-    (site,) = find_sites(traces)
+    (site,) = find_sites(traces, 6.0)
     for belief, right in ((0.9, False), (0.1, True)):
         assert judged(image, traces, [decide(site, belief)]) == [right]
     # A line on the table crosses no second cable.
     traces[0] = Trace(np.array([[2.0, 10.0], [58.0, 10.0]]), TraceEnd.EDGE, 1.0)
-    (site,) = find_sites(traces)
+    (site,) = find_sites(traces, 6.0)
     assert judged(image, traces, [decide(site, 0.9)]) == []

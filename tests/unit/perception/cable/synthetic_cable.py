@@ -9,6 +9,7 @@ from scipy.ndimage import gaussian_filter, gaussian_filter1d
 
 Floats = NDArray[np.float64]
 SHAPE = (773, 1032)
+WIDTH_PX = 7.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -101,7 +102,7 @@ def render(
     drawing: Drawing,
     rng: np.random.Generator,
     *,
-    width_px: float = 7.0,
+    width_px: float = WIDTH_PX,
     cloth: float = 60.0,
     cable: float = 190.0,
     noise: float = 5.0,

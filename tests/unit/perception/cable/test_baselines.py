@@ -2,6 +2,7 @@ import numpy as np
 import pytest
 from synthetic_cable import (
     SHAPE,
+    WIDTH_PX,
     Drawing,
     evenly,
     laid_down,
@@ -38,7 +39,7 @@ class TrueClassifier:
         strand = curve_crossings(nodes)
         index = np.arange(len(nodes), dtype=float)
         found = []
-        for site in find_sites(traces):
+        for site in find_sites(traces, WIDTH_PX):
             places = [
                 [np.interp(c.first, index, nodes[:, axis]) for axis in (0, 1)]
                 for c in strand.crossings

@@ -5,11 +5,11 @@ import math
 
 import numpy as np
 import pytest
-from synthetic_cable import Drawing, figure_8, laid_down, overhand
+from synthetic_cable import WIDTH_PX, Drawing, figure_8, laid_down, overhand
 
-from perception.cable.belief import diagram_probability, knotted_probability
+from perception.cable.belief import diagram_probability, knotted_probability, reading_of
 from perception.cable.crossings import decide, find_sites
-from perception.cable.knots import find_knots, knot_intervals
+from perception.cable.knots import find_knots, knot_intervals, likeliest_together
 from perception.cable.outcomes import likeliest_flips
 from perception.cable.topology import curve_crossings
 from perception.cable.types import Crossing, Trace, TraceEnd
@@ -18,7 +18,7 @@ from perception.cable.types import Crossing, Trace, TraceEnd
 def seen(drawing: Drawing, sure: float = 0.999) -> tuple[Trace, tuple[Crossing, ...]]:
     """The trace of a drawing, and its crossings as they are, all equally sure."""
     trace = Trace(drawing.points_px, TraceEnd.ENDPOINT, 1.0)
-    sites = find_sites((trace,))
+    sites = find_sites((trace,), WIDTH_PX)
     over = [crossing.first_over for crossing in curve_crossings(drawing.nodes).crossings]
     assert len(sites) == len(over)
     return trace, tuple(
@@ -51,6 +51,34 @@ def test_the_same_curve_laid_down_in_order_is_no_knot(tie):
     trace, crossings = seen(laid_down(tie()))
     assert knotted_probability((trace,), crossings) < 0.03
     assert find_knots((trace,), crossings) == ()
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_a_knot_is_found_where_one_is_believed_in(seed):
+    rng = np.random.default_rng(seed)
+    trace, crossings = seen(overhand() if seed % 2 else figure_8())
+    unsure = [_turned(c, rng.uniform(0.5, 0.7), rng.random() < 0.5) for c in crossings]
+    believed = diagram_probability(trace, 0, unsure) > 0.5
+    assert bool(find_knots((trace,), unsure)) == believed
+
+
+def _turned(crossing: Crossing, probability: float, flip: bool) -> Crossing:
+    arcs = crossing.arc_over, crossing.arc_under
+    over, under = arcs[::-1] if flip else arcs
+    return Crossing(crossing.position_px, 0, over, 0, under, probability)
+
+
+def test_the_likeliest_answers_one_by_one_need_not_be_likeliest_together():
+    rng = np.random.default_rng(5)
+    trace, crossings = seen(figure_8())
+    changed = 0
+    for _ in range(40):
+        unsure = [_turned(c, rng.uniform(0.5, 0.6), rng.random() < 0.5) for c in crossings]
+        together = likeliest_together(reading_of(trace, 0, unsure))
+        changed += [c.arc_over for c in together] != [
+            c.arc_over for c in sorted(unsure, key=lambda c: min(c.arc_over, c.arc_under))
+        ]
+    assert 0 < changed < 40
 
 
 def test_one_open_crossing_of_an_overhand_leaves_one_half():
@@ -121,3 +149,16 @@ def test_two_knots_in_series_are_two_knots():
     knots = find_knots((trace,), crossings)
     assert len(knots) == 2
     assert knots[0].interval[1] < knots[1].interval[0]
+
+
+def test_a_noose_before_the_knot_is_no_knot():
+    # A knot tied with a bight, ends on one side, comes undone; half of it alone does not.
+    bight, knot = overhand((260.0, 220.0), 90.0).nodes, overhand((260.0, 560.0), 60.0).nodes
+    aside = np.c_[-np.gradient(bight[:, 1]), np.gradient(bight[:, 0])]
+    aside *= 8.0 / np.linalg.norm(aside, axis=1, keepdims=True)
+    back = np.c_[bight[:, :2] + aside, bight[:, 2] - 0.1][::-1]
+    noose, own = seen(Drawing(bight))
+    assert len(find_knots((noose,), own)) == 1
+    whole, crossings = seen(Drawing(np.vstack([bight, back, knot])))
+    (found,) = find_knots((whole,), crossings)
+    assert found.first_undercrossing_px[1] > 400.0

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from synthetic_cable import WIDTH_PX
 
 from perception.cable.crossings import decide, find_sites
 from perception.cable.linking import classify_cables, link_of
@@ -79,7 +80,7 @@ def seen(cables):
     """Traces of curves in space, and their crossings as they are."""
     traces = tuple(trace(nodes) for nodes in cables)
     crossings = []
-    for site in find_sites(traces):
+    for site in find_sites(traces, WIDTH_PX):
         heights = [
             np.interp(arc * _length(traces[k].points_px)[-1], _length(traces[k].points_px), z)
             for k, arc, z in zip(
@@ -128,7 +129,7 @@ def test_two_bights_hooked_into_each_other_are_linked():
     first = np.c_[np.interp(t, range(5), u[:, 0]), np.interp(t, range(5), u[:, 1]), 0.0 * t]
     second = first * [-1.0, 1.0, 1.0] + [0.0, 22.0, 0.0]
     traces = (trace(first), trace(second))
-    sites = find_sites(traces)
+    sites = find_sites(traces, WIDTH_PX)
     assert len(sites) == 2
     hooked = [decide(site, float(k)) for k, site in enumerate(sites)]
     laid = [decide(site, 1.0) for site in sites]

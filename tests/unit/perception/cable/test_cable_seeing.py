@@ -191,7 +191,7 @@ def test_classifiers_read_every_crossing(classifier, wanderings):
 def test_exchanging_the_strands_changes_the_sign(kind, knotted):
     drawing, image = knotted
     classifier, mask = kind(), observe(image).mask
-    for site in find_sites((Trace(drawing.points_px, TraceEnd.ENDPOINT, 1.0),)):
+    for site in find_sites((Trace(drawing.points_px, TraceEnd.ENDPOINT, 1.0),), mask.width_px):
         swapped = CrossingSite(
             site.position_px,
             site.traces,

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from synthetic_cable import figure_8, laid_down, overhand
+from synthetic_cable import WIDTH_PX, figure_8, laid_down, overhand
 
 from perception.cable.belief import (
     any_knotted,
@@ -34,7 +34,7 @@ from perception.cable.types import QuestionKind, Reading, Trace, TraceEnd
 def seen(drawing, sure):
     """The reading of a drawing with its true crossings, with these probabilities."""
     trace = Trace(drawing.points_px, TraceEnd.ENDPOINT, 1.0)
-    sites = find_sites((trace,))
+    sites = find_sites((trace,), WIDTH_PX)
     over = [crossing.first_over for crossing in curve_crossings(drawing.nodes).crossings]
     sure = [sure] * len(sites) if isinstance(sure, float) else sure
     crossings = [
