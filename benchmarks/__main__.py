@@ -12,6 +12,7 @@ from benchmarks.report import write_page
 
 BENCHMARKS = {
     "affinity": ("benchmarks.affinity", "what language models know of shelves, beside a taxonomy"),
+    "detection": ("benchmarks.detection", "labelled products on shelves, by looks, text, company"),
     "motion": ("benchmarks.motion", "kinematics, collisions, plans and limits of the arms"),
     "resuming": ("benchmarks.resuming", "untangling missions that are killed and gone on with"),
     "beliefs": ("benchmarks.beliefs", "P(knotted), P(knot) and what to ask next, without images"),

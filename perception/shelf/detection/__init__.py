@@ -1,0 +1,1 @@
+"""Labelled products in RGB-D images: what stands apart, how it looks, what is written on it."""

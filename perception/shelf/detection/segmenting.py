@@ -1,0 +1,174 @@
+"""Objects on a shelf apart from each other by depth alone, whatever they are.
+
+Objects are cuboids with their faces along the shelf (thesis, section 5.2), so that a front has one
+distance from the shelf's edge. Fronts are told apart where that distance jumps or where the height
+of their upper edge does; tops and sides go to the front that is nearest in the image.
+"""
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from scipy.ndimage import distance_transform_edt, label
+
+from perception.rgbd import RgbdFrame
+from perception.shelf.casting import BoxCaster
+from perception.shelf.types import NOTHING, Bools, Floats, Segments, Shelf
+
+# A jump between neighbouring pixels that is no noise any more.
+STEP_M = 0.004
+# Nearer to a wall than this is the wall.
+WALL_M = 0.008
+# Smallest object, as a share of the image; smaller patches are noise or slivers.
+LEAST_SHARE = 6e-5
+# So far around an upper edge its height is looked at, as a share of the image's width.
+EDGE_SHARE = 0.004
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ShelfPoints:
+    """Where the pixels of a frame lie.
+
+    Attributes:
+        points_m: Points in the shelf's frame, shape (height, width, 3); lost depth is filled in
+            from its neighbours.
+        things: Which pixels show something before the walls.
+    """
+
+    points_m: Floats
+    things: Bools
+
+
+def shelf_points(frame: RgbdFrame, shelf: Shelf) -> ShelfPoints:
+    """Measure the pixels of a frame."""
+    caster = BoxCaster(frame.camera)
+    filled = cv2.medianBlur(np.nan_to_num(frame.depth_m, nan=0.0).astype(np.float32), 5)
+    size_m = np.array([shelf.width_m, shelf.depth_m, shelf.height_m])
+    enter_m, leave_m = caster.inside(np.zeros(3), size_m)
+    depth_m = filled.astype(np.float64)
+    things = (depth_m < leave_m - WALL_M) & (depth_m > enter_m - WALL_M) & (leave_m > enter_m)
+    return ShelfPoints(caster.origin_m + depth_m[..., None] * caster.rays, np.asarray(things))
+
+
+def segmented(points: ShelfPoints) -> Segments:
+    """Tell objects apart.
+
+    Args:
+        points: Where the pixels lie.
+
+    Returns:
+        Which object each pixel shows, by number, or `NOTHING`; shape (height, width).
+    """
+    y_m = points.points_m[..., 1]
+    calm = points.things & ~_jumps(y_m)
+    numbers, _ = label(calm)
+    numbers = _large(numbers, round(LEAST_SHARE * numbers.size))
+    numbers = _split_by_height(numbers, points)
+    numbers = _joined_behind(_large(numbers, round(LEAST_SHARE * numbers.size)), points)
+    return _grown(numbers, points.things)
+
+
+def _jumps(y_m: Floats) -> Bools:
+    """Say where the distance from the shelf's edge changes by more than noise does."""
+    jumps = np.zeros(y_m.shape, dtype=bool)
+    across = np.abs(np.diff(y_m, axis=1)) > STEP_M
+    down = np.abs(np.diff(y_m, axis=0)) > STEP_M
+    jumps[:, 1:] |= across
+    jumps[1:, :] |= down
+    return jumps
+
+
+def _large(numbers: Segments, least_px: int) -> Segments:
+    """Return the patches that are large enough, numbered from 1."""
+    sizes = np.bincount(numbers.ravel())
+    kept = sizes >= least_px
+    kept[0] = False
+    renumbered = np.where(kept, np.cumsum(kept), 0)
+    return np.asarray(renumbered[numbers], dtype=np.int16)
+
+
+def _split_by_height(numbers: Segments, points: ShelfPoints) -> Segments:
+    """Cut patches where the height of their upper edge jumps."""
+    split, last = numbers.copy(), int(numbers.max())
+    reach_px = max(2, round(EDGE_SHARE * numbers.shape[1]))
+    for number in range(1, int(numbers.max()) + 1):
+        patch = numbers == number
+        columns = np.flatnonzero(patch.any(axis=0))
+        tops_m = points.points_m[patch[:, columns].argmax(axis=0), columns, 2]
+        starts = _steps(tops_m, reach_px)
+        for start, end in zip(starts, [*starts[1:], len(columns)], strict=True):
+            last += 1
+            part = np.zeros_like(patch)
+            part[:, columns[start:end]] = patch[:, columns[start:end]]
+            split[part] = last
+    return split
+
+
+def _steps(tops_m: Floats, reach_px: int) -> list[int]:
+    """Return where the pieces of an upper edge begin that have one height each."""
+    starts = [0]
+    for at in range(reach_px, len(tops_m) - reach_px + 1):
+        before, behind = tops_m[max(starts[-1], at - reach_px) : at], tops_m[at : at + reach_px]
+        step_m = abs(float(np.median(before)) - float(np.median(behind)))
+        if step_m > 1.5 * STEP_M and at - starts[-1] >= reach_px and _calm(before, behind):
+            starts.append(at)
+    return starts
+
+
+def _calm(before: Floats, behind: Floats) -> bool:
+    return bool(max(np.ptp(before), np.ptp(behind)) < STEP_M)
+
+
+@dataclass(frozen=True, slots=True)
+class _Front:
+    """A front: how deep in the shelf, how high, and from where to where in the image."""
+
+    y_m: float
+    top_m: float
+    first: int
+    last: int
+
+
+def _joined_behind(numbers: Segments, points: ShelfPoints) -> Segments:
+    """Give the pieces of an object that another hides in its middle one number."""
+    count = int(numbers.max())
+    fronts = [_front(numbers == number, points) for number in range(1, count + 1)]
+    joined = np.arange(count + 1)
+    order = sorted(range(count), key=lambda index: fronts[index].first)
+    for at, left in enumerate(order):
+        for right in order[at + 1 :]:
+            if _one_behind(fronts[left], fronts[right], numbers, points):
+                joined[right + 1] = joined[left + 1]
+                break
+    return _large(np.asarray(joined[numbers], dtype=np.int16), 1)
+
+
+def _front(patch: Bools, points: ShelfPoints) -> _Front:
+    columns = np.flatnonzero(patch.any(axis=0))
+    seen_m = points.points_m[patch]
+    return _Front(
+        float(np.quantile(seen_m[:, 1], 0.1)), float(np.quantile(seen_m[:, 2], 0.99)),
+        int(columns[0]), int(columns[-1]),
+    )  # fmt: skip
+
+
+def _one_behind(left: _Front, right: _Front, numbers: Segments, points: ShelfPoints) -> bool:
+    """Say whether two fronts are one with something nearer between them."""
+    alike = max(abs(left.y_m - right.y_m), abs(left.top_m - right.top_m)) < 0.5 * STEP_M
+    if not alike or right.first <= left.last + 1:
+        return False
+    between = points.points_m[:, left.last + 1 : right.first]
+    level = np.abs(between[..., 2] - left.top_m) < 0.1 * max(left.top_m, 0.05)
+    shown = numbers[:, left.last + 1 : right.first] > 0
+    nearer = level & shown & (between[..., 1] < left.y_m - STEP_M)
+    return bool(nearer.any(axis=0).mean() > 0.9)
+
+
+def _grown(numbers: Segments, things: Bools) -> Segments:
+    """Give every pixel of a thing to the patch that is nearest in the image."""
+    if not numbers.any():
+        return np.full(numbers.shape, NOTHING, dtype=np.int16)
+    rows, columns = distance_transform_edt(
+        numbers == 0, return_distances=False, return_indices=True
+    )
+    return np.where(things, numbers[rows, columns] - 1, NOTHING).astype(np.int16)
