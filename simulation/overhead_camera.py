@@ -1,10 +1,13 @@
 """The overhead camera of the table cell: sees the arms and the cable, and nothing else."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
+from executive.core.errors import DeviceError
 from perception.camera import CameraFrame, CameraModel
 from robots.placement import TABLE_SIZE_M
 from simulation.poses import pose_matrices
@@ -16,6 +19,8 @@ from simulation.table_cell_config import CameraConfig
 from simulation.table_world import TableWorld
 
 _WIDTH_PX, _HEIGHT_PX = 1032, 773
+# After so many lost frames in a row the camera is taken to be broken.
+MOST_LOST = 20
 
 
 def overhead_camera_model(config: CameraConfig) -> CameraModel:
@@ -31,14 +36,55 @@ def overhead_camera_model(config: CameraConfig) -> CameraModel:
     )
 
 
-class OverheadCamera:
-    """`perception.camera.Camera` of a table world."""
+def miscalibrated(
+    camera: CameraModel, config: CameraConfig, rng: np.random.Generator
+) -> CameraModel:
+    """Return what a calibration with errors takes a camera for.
 
-    def __init__(self, world: TableWorld, config: CameraConfig, rng: np.random.Generator) -> None:
-        """Mount the camera; the cloth under it and all noise come from `rng`."""
+    Args:
+        camera: What it is.
+        config: Sizes of the errors; without any, the camera itself is returned.
+        rng: Draws them.
+    """
+    if not (config.calibration_error_m or config.calibration_error_rad or config.focal_error):
+        return camera
+    T_world_camera = camera.T_world_camera.copy()
+    turn = Rotation.from_rotvec(config.calibration_error_rad * rng.standard_normal(3))
+    T_world_camera[:3, :3] = T_world_camera[:3, :3] @ turn.as_matrix()
+    T_world_camera[:3, 3] += config.calibration_error_m * rng.standard_normal(3)
+    focal_px = camera.focal_px * (1.0 + config.focal_error * float(rng.standard_normal()))
+    return replace(camera, focal_px=focal_px, T_world_camera=T_world_camera)
+
+
+class OverheadCamera:
+    """`perception.camera.Camera` of a table world.
+
+    Attributes:
+        model: What the calibration takes the camera for; frames carry it.
+    """
+
+    def __init__(
+        self,
+        world: TableWorld,
+        config: CameraConfig,
+        rng: np.random.Generator,
+        faults_rng: np.random.Generator | None = None,
+    ) -> None:
+        """Mount the camera.
+
+        Args:
+            world: What it looks at.
+            config: What it is like.
+            rng: The cloth under it and all noise come from here.
+            faults_rng: Errors of the calibration and lost frames come from here; a generator of
+                their own, so that images are the same with them and without.
+        """
         self._world, self._rng = world, rng
-        self.model = overhead_camera_model(config)
-        self._renderer = Renderer(self.model, TABLE_SIZE_M, rng)
+        self._faults_rng = faults_rng or np.random.default_rng(0)
+        self._drop_rate = config.drop_rate
+        true_model = overhead_camera_model(config)
+        self.model = miscalibrated(true_model, config, self._faults_rng)
+        self._renderer = Renderer(true_model, TABLE_SIZE_M, rng)
         self._sensor = SensorParameters(
             blur_px=config.blur_px,
             read_noise=config.read_noise,
@@ -48,15 +94,24 @@ class OverheadCamera:
 
     @property
     def noise_state(self) -> Mapping[str, Any]:
-        """State of the generator behind all noise to come."""
-        return self._rng.bit_generator.state
+        """State of the generators behind all noise and lost frames to come."""
+        return {**self._rng.bit_generator.state, "faults": self._faults_rng.bit_generator.state}
 
     def take_noise_state(self, state: Mapping[str, Any]) -> None:
-        """Go on with the noise of that state; the cloth stays."""
-        self._rng.bit_generator.state = state
+        """Go on with the noise of that state; the cloth and the calibration stay."""
+        noise = dict(state)
+        faults = noise.pop("faults", None)
+        self._rng.bit_generator.state = noise
+        if faults is not None:
+            self._faults_rng.bit_generator.state = faults
 
     def capture(self) -> CameraFrame:
-        """Take a frame now."""
+        """Take a frame now.
+
+        Raises:
+            DeviceError: Frame after frame was lost.
+        """
+        self._wait_for_one()
         world = self._world
         names, rod = world.body.link_names, world.rod
         poses = pose_matrices(*world.body.link_poses(names))
@@ -69,3 +124,12 @@ class OverheadCamera:
             stamp_s=world.now_s(),
             camera=self.model,
         )
+
+    def _wait_for_one(self) -> None:
+        if self._drop_rate == 0.0:
+            return
+        if all(self._faults_rng.random() < self._drop_rate for _ in range(MOST_LOST)):
+            raise DeviceError(
+                f"camera: {MOST_LOST} frames in a row were lost; expected one now and then; "
+                f"drop_rate is {self._drop_rate:g}"
+            )

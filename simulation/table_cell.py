@@ -53,12 +53,15 @@ class TableCell:
         """
         settings = read_settings(TableCellConfig, config, "cell config")
         cable = read_settings(TableScenario, scenario, "scenario").cable
-        cable_seed, camera_seed = np.random.SeedSequence(seed).spawn(2)
+        cable_seed, camera_seed, faults_seed = np.random.SeedSequence(seed).spawn(3)
         nodes_m = _lay_cable(cable, np.random.default_rng(cable_seed))
         self._world = TableWorld(nodes_m, settings.physics.step_hz)
         self.driver: SimArmsDriver = self._world.driver
         self.camera = OverheadCamera(
-            self._world, settings.camera, np.random.default_rng(camera_seed)
+            self._world,
+            settings.camera,
+            np.random.default_rng(camera_seed),
+            np.random.default_rng(faults_seed),
         )
         self.clock = SimClock(self)
         # One thread at a time lets the world go on; who makes an emergency stop goes first.

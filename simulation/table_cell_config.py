@@ -57,6 +57,11 @@ class CameraConfig(_Document):
         read_noise: Noise in the dark, in grey values.
         speckle: Factor on the flicker of surfaces under the projector.
         depth_noise_m: Standard deviation of measured depth.
+        calibration_error_m: Standard deviation of each coordinate of where the camera is taken
+            to be; drawn once a run.
+        calibration_error_rad: Standard deviation of its orientation about each axis.
+        focal_error: Standard deviation of its focal length, as a share of it.
+        drop_rate: Share of frames that never arrive; the next one is taken instead.
     """
 
     height_m: Annotated[float, Field(gt=0.8, le=3.0)] = 1.15
@@ -65,6 +70,10 @@ class CameraConfig(_Document):
     read_noise: Annotated[float, Field(ge=0.0)] = 0.8
     speckle: Annotated[float, Field(ge=0.0)] = 1.0
     depth_noise_m: Annotated[float, Field(ge=0.0)] = 0.0005
+    calibration_error_m: Annotated[float, Field(ge=0.0, le=0.05)] = 0.0
+    calibration_error_rad: Annotated[float, Field(ge=0.0, le=0.1)] = 0.0
+    focal_error: Annotated[float, Field(ge=0.0, le=0.1)] = 0.0
+    drop_rate: Annotated[float, Field(ge=0.0, le=1.0)] = 0.0
 
 
 class PhysicsConfig(_Document):
