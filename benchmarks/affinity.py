@@ -21,7 +21,7 @@ from perception.shelf.affinity_scoring import (
 )
 from perception.shelf.language.comparing import EVEN, stored_matrices
 from perception.shelf.language.recipes import with_diagonal
-from perception.shelf.language.stored import BEST_MODELS, DEFAULT_MODELS
+from perception.shelf.language.stored import BEST_MODELS, DEFAULT_MODELS, stored_affinity
 from perception.shelf.types import Floats
 from simulation.shelf.taxonomy import Domain, shipped_domain, taxonomy_affinity
 
@@ -44,24 +44,24 @@ def run(quick: bool, seed: int) -> Sequence[Row]:  # noqa: ARG001 - there is no 
 def _stable_rows() -> list[Row]:
     """Return the three rows that other checks ask for by name."""
     domain = shipped_domain(FIRST)
-    truth, matrices = taxonomy_affinity(domain), dict(_matrices(domain))
-    wanted = {
-        "jsd_uniform": (EVEN, "= 0.65"),
-        "jsd_default": (DEFAULT_MODELS, GOAL),
-        "jsd_best_offline": (BEST_MODELS, GOAL),
+    truth = taxonomy_affinity(domain)
+    matrices = {
+        "jsd_uniform": (_even(domain), "= 0.65"),
+        "jsd_default": (stored_affinity(FIRST, DEFAULT_MODELS), GOAL),
+        "jsd_best_offline": (stored_affinity(FIRST, BEST_MODELS), GOAL),
     }
     return [
-        mean(
-            name, row_divergences(with_diagonal(matrices[label].rows), truth).tolist(), "bit", goal
-        )
-        for name, (label, goal) in wanted.items()
-        if label in matrices
+        mean(name, row_divergences(with_diagonal(matrix.rows), truth).tolist(), "bit", goal)
+        for name, (matrix, goal) in matrices.items()
     ]
 
 
+def _even(domain: Domain) -> AffinityMatrix:
+    return AffinityMatrix(domain.names, even_rows(len(domain.names)), Origin(EVEN))
+
+
 def _matrices(domain: Domain) -> list[tuple[str, AffinityMatrix]]:
-    even = AffinityMatrix(domain.names, even_rows(len(domain.names)), Origin(EVEN))
-    return [(EVEN, even), *stored_matrices(domain.name)]
+    return [(EVEN, _even(domain)), *stored_matrices(domain.name)]
 
 
 def _rows(name: str, matrix: AffinityMatrix, truth: Floats) -> list[Row]:

@@ -44,11 +44,12 @@ class ShelfBelief:
         target_m: Its size.
         objects: What has been seen and is still there.
         places_m: Cells of the floor in which the target's centre may be, shape (K, 2).
-        left: In which of them nothing seen speaks against it, shape (K,).
+        plausible: How far looks have left it possible there, in (0, 1], shape (K,).
         weights: Probability of each cell, shape (K,); adds up to 1.
         organisation: Estimated share of objects that stand where they belong, in [0, 1].
         floor: Which cells of the floor are known to be free, shape (nx, ny).
         met: Footprints of what moves have met unseen, shape (M, 4).
+        met_after: After how many moves each of them was met.
         been: Where objects were moved from, label and box, in order.
         picture: The latest look with the belief drawn over it.
         looks: Looks so far.
@@ -58,11 +59,12 @@ class ShelfBelief:
     target_m: Size
     objects: tuple[SeenObject, ...]
     places_m: Floats
-    left: Bools
+    plausible: Floats
     weights: Floats
     organisation: float
     floor: Bools
     met: Floats
+    met_after: tuple[int, ...]
     been: tuple[tuple[str, Box], ...]
     picture: ColourImage
     looks: int

@@ -36,6 +36,13 @@ from perception.shelf.types import Bools, Box, Floats, ShelfView, Sighting
 
 # So many cameras' rays and silhouettes are kept: they cost more than everything else.
 KEPT = 8
+# How likely a look is to be mistaken that rules a place out. What is ruled out comes up again when
+# nothing else is left: places of what is seen are known to some millimetres alone.
+MISTAKEN = 1e-3
+# For so many moves it is remembered that something was met.
+REMEMBERED = 4
+# How well the place is known of a target that was seen from another side, and only partly.
+GLIMPSE_M = 0.02
 # After these failures an object is not where it was, and must be looked for.
 GONE = ("push.nothing_there", "suction.lost")
 
@@ -73,11 +80,12 @@ class SearchReasoner:
             target_m=size_m,
             objects=(),
             places_m=places_m,
-            left=np.ones(count, dtype=bool),
+            plausible=np.ones(count),
             weights=np.full(count, 1.0 / count),
             organisation=0.5,
             floor=np.zeros(cells, dtype=bool),
             met=np.zeros((0, 4)),
+            met_after=(),
             been=(),
             picture=np.zeros((self._camera.height_px, self._camera.width_px, 3), dtype=np.uint8),
             looks=0,
@@ -94,24 +102,24 @@ class SearchReasoner:
         view = ShelfView(frame.depth_m, detections.segments, numbers, frame.camera)
         objects = tracked(Look(view, detections, caster), belief.objects, self._stock)
         poses = self._hidden(frame.camera, belief.target)
-        left = belief.left & poses.feasible(view, _others(objects, detections, belief.target))
-        # A look that leaves nothing is not believed: something has moved, or was mistaken.
-        left = left if left.any() else belief.left
+        possible = poses.feasible(view, _others(objects, detections, belief.target))
+        plausible = np.where(possible, belief.plausible, belief.plausible * MISTAKEN)
         seen = replace(
             belief,
             objects=objects,
-            left=left,
+            plausible=np.maximum(plausible, MISTAKEN**2),
             floor=self._floor(belief, view, caster, objects),
             looks=belief.looks + 1,
         )
-        seen = self._weighted(seen)
+        seen = self._weighted(seen, possible)
         heat = poses.heat(seen.weights)
         picture = drawn_belief(frame.colour, detections.segments, heat, seen.objects, belief.target)
         return replace(seen, picture=picture)
 
     def choose(self, belief: ShelfBelief) -> Plan | None:
         """See `ShelfReasoning`."""
-        return look_ahead(self._situation(belief), Depth(moves=3))
+        # Where something was taken for the target and is not sure, the search goes on without it.
+        return look_ahead(self._situation(self.removed(belief, belief.target)), Depth())
 
     def clear_way(self, belief: ShelfBelief, label: str) -> Move | None:
         """See `ShelfReasoning`."""
@@ -128,7 +136,7 @@ class SearchReasoner:
             replace(one, box=box, sure=box) if one.label == label else one for one in belief.objects
         )
         been = belief.been if before is None else (*belief.been, (label, before.box))
-        return replace(belief, objects=objects, been=been, met=np.vstack([belief.met, met]))
+        return _meeting(_forgetting(replace(belief, objects=objects, been=been)), met)
 
     def refused(self, belief: ShelfBelief, move: Move, failure: str) -> ShelfBelief:
         """See `ShelfReasoning`."""
@@ -137,8 +145,7 @@ class SearchReasoner:
             return belief
         if failure in GONE:
             return self.removed(belief, move.label)
-        met = contact_of(move, thing.box, failure)
-        return replace(belief, met=np.vstack([belief.met, met]))
+        return _meeting(belief, contact_of(move, thing.box, failure)[None])
 
     def removed(self, belief: ShelfBelief, label: str) -> ShelfBelief:
         """See `ShelfReasoning`."""
@@ -164,12 +171,17 @@ class SearchReasoner:
             been=belief.been,
         )
 
-    def _weighted(self, belief: ShelfBelief) -> ShelfBelief:
-        """Weigh the poses left by semantics, as far as the shelf is in order."""
+    def _weighted(self, belief: ShelfBelief, possible: Bools) -> ShelfBelief:
+        """Weigh the poses that are possible now by semantics, as far as the shelf is in order."""
         first = belief.first
         organisation = organisation_of(first, self._affinity)
         mixed = self._affinity.mixed(organisation)
-        weights = belief.left * floor_semantics(belief.places_m, first, mixed, belief.target)
+        weights = belief.plausible * np.where(possible, 1.0, MISTAKEN**2)
+        weights = (
+            weights
+            * _glimpsed(belief)
+            * floor_semantics(belief.places_m, first, mixed, belief.target)
+        )
         return replace(belief, weights=weights / weights.sum(), organisation=organisation)
 
     def _floor(
@@ -201,6 +213,33 @@ class SearchReasoner:
             if len(self._poses) > KEPT:
                 self._poses.popitem(last=False)
         return self._poses[key]
+
+
+def _meeting(belief: ShelfBelief, met: Floats) -> ShelfBelief:
+    """Add what was met, shape (M, 4)."""
+    after = (len(belief.been),) * len(met)
+    return replace(belief, met=np.vstack([belief.met, met]), met_after=(*belief.met_after, *after))
+
+
+def _forgetting(belief: ShelfBelief) -> ShelfBelief:
+    """Forget what was met some moves ago: it may have been one of the objects moved since."""
+    kept = [len(belief.been) - after <= REMEMBERED for after in belief.met_after]
+    return replace(
+        belief,
+        met=belief.met[np.array(kept, dtype=bool)],
+        met_after=tuple(after for after, keep in zip(belief.met_after, kept, strict=True) if keep),
+    )
+
+
+def _glimpsed(belief: ShelfBelief) -> Floats:
+    """Return how likely each place is by a sight of the target from another side, shape (K,)."""
+    found = belief.found
+    if found is None:
+        return np.ones(len(belief.places_m))
+    apart_m = np.linalg.norm(belief.places_m - (found.box.x_m, found.box.y_m), axis=1)
+    near = np.exp(-0.5 * (apart_m / GLIMPSE_M) ** 2)
+    mixed: Floats = found.certainty * near + (1.0 - found.certainty) * MISTAKEN
+    return mixed
 
 
 def free_cells_shape(width_m: float, depth_m: float) -> tuple[int, int]:

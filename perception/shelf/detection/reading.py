@@ -1,6 +1,7 @@
 """Text in images, by whatever reads it; RapidOCR's models come inside its package."""
 
 from dataclasses import dataclass
+from importlib import import_module
 from typing import Any, Protocol
 
 import numpy as np
@@ -61,12 +62,13 @@ class RapidReader:
             InputError: RapidOCR is not installed.
         """
         try:
-            from rapidocr_onnxruntime import RapidOCR
+            # By name: what it needs cannot be asked for beside ours, see INSTALL.
+            rapid = import_module("rapidocr_onnxruntime")
         except ImportError as error:
             raise InputError(
                 f"reading labels: {error.name} is not installed; try: {INSTALL}"
             ) from error
-        self._engine: Any = RapidOCR(
+        self._engine: Any = rapid.RapidOCR(
             intra_op_num_threads=1, inter_op_num_threads=1,
             det_limit_side_len=1600, det_limit_type="max",
         )  # fmt: skip

@@ -14,7 +14,7 @@ from perception.shelf.language.scores import PairScores, load_scores
 FOLDER: Final = Path(str(files("perception.shelf"))) / "matrices"
 DEFAULT_MODELS: Final = "smollm2+minilm"
 """The best of those under the Apache licence."""
-BEST_MODELS: Final = "gemma3+minilm"
+BEST_MODELS: Final = "gemma3"
 """The best of all; Gemma has terms of its own."""
 DEFAULT_RECIPE: Final = "symmetric"
 

@@ -10,6 +10,8 @@ from perception.shelf.types import Bools, Floats
 
 # Of two moves that clear as much, the shorter one.
 HASTE_1_M = 0.1
+# By how much an object may stand elsewhere than where it was seen, to be tried one by one.
+MARGINS_M = (0.0, 0.008, 0.02)
 
 
 def freeing_move(situation: Situation, label: str) -> Move | None:
@@ -23,10 +25,7 @@ def freeing_move(situation: Situation, label: str) -> Move | None:
         The move, or None when nothing stands in front, or nothing there can be moved away.
     """
     rows = footprints(list(situation.boxes))
-    own = situation.labels.index(label)
-    lane = front_lane(rows[own])
-    blocked = overlapping(lane, rows)
-    blocked[own] = False
+    lane, blocked = _blocked(rows, situation.labels.index(label))
     if not blocked.any():
         return None
     inputs = kernel_inputs(situation)
@@ -42,6 +41,21 @@ def freeing_move(situation: Situation, label: str) -> Move | None:
         return None
     pick = int(np.flatnonzero(helpful)[np.argmin(costs[helpful])])
     return named_move(situation, int(moved[pick]), bool(by_cup[pick]), corners[pick])
+
+
+def _blocked(rows: Floats, own: int) -> tuple[Floats, Bools]:
+    """Return the lane that has to be free, and which objects stand in it.
+
+    Where none seems to, the lane is taken to be wider: places are known to some millimetres.
+    """
+    lane, blocked = front_lane(rows[own]), np.zeros(len(rows), dtype=bool)
+    for margin_m in MARGINS_M:
+        wider = lane + margin_m * np.array([-1.0, 0.0, 1.0, 0.0])
+        blocked = overlapping(wider, rows)
+        blocked[own] = False
+        if blocked.any():
+            return wider, blocked
+    return lane, blocked
 
 
 def _costs(rows: Floats, lane: Floats, moved: np.ndarray, corners: Floats) -> Floats:
