@@ -9,7 +9,7 @@ from robots.shelf_arm.motions import ActionError, ShelfMotions, Step
 from robots.shelf_tool import Cuboid, PutElsewhere, TakeOut, ToolFailure, ToolResult
 
 # Lowered that much beyond where the floor should be, until it is felt [m].
-_OVER_LOWER_M = 0.006
+_OVER_LOWER_M = 0.004
 _RELEASE_S = 0.2
 
 
@@ -18,11 +18,7 @@ def put_elsewhere(motions: ShelfMotions, action: PutElsewhere) -> Generator[None
     thing = action.thing
     yield from take(motions, thing)
     yield from bring_out(motions, thing)
-    try:
-        yield from put_down(motions, thing, action.x_m, action.y_m)
-    except ActionError as error:
-        yield from _bring_back(motions, thing, error)
-        raise
+    yield from put_down(motions, thing, action.x_m, action.y_m)
     moved_m = float(np.hypot(action.x_m - thing.x_m, action.y_m - thing.y_m))
     return ToolResult(None, f"put at x = {action.x_m:.3f} m, y = {action.y_m:.3f} m", moved_m)
 
@@ -36,6 +32,16 @@ def take_out(
     yield from put_down(motions, action.thing, *counter_m)
     moved_m = float(np.hypot(counter_m[0] - action.thing.x_m, counter_m[1] - action.thing.y_m))
     return ToolResult(None, "handed over on the counter", moved_m)
+
+
+def bring_back(motions: ShelfMotions) -> Step:
+    """Put what is still held back to where it was taken from; nothing when nothing is held."""
+    thing = motions.carried
+    if thing is None or not motions.driver.holds():
+        motions.carried = None
+        return
+    yield from bring_out(motions, thing)
+    yield from put_down(motions, thing, thing.x_m, thing.y_m)
 
 
 def take(motions: ShelfMotions, thing: Cuboid) -> Step:
@@ -64,6 +70,7 @@ def take(motions: ShelfMotions, thing: Cuboid) -> Step:
     if not driver.holds():
         driver.suck(False)
         raise ActionError(ToolFailure.MISSED, "the cups let go as they took up the weight")
+    motions.carried = thing
 
 
 def bring_out(motions: ShelfMotions, thing: Cuboid) -> Step:
@@ -74,6 +81,8 @@ def bring_out(motions: ShelfMotions, thing: Cuboid) -> Step:
     """
     settings, driver = motions.settings, motions.driver
     out_m = motions.tip_m()[1] + thing.size_m[1] + settings.clear_m
+    if out_m <= 0.0:
+        return
     way = np.array([0.0, -out_m, 0.0])
     yield from carry(motions, way, settings.entry_force_n)
     if driver.tripped():
@@ -110,6 +119,7 @@ def set_down(motions: ShelfMotions) -> Step:
     down = np.array([0.0, 0.0, -settings.lift_m - _OVER_LOWER_M])
     yield from motions.line_by(down, settings.lower_speed_m_s, settings.floor_force_n)
     driver.suck(False)
+    motions.carried = None
     yield from motions.wait(_RELEASE_S)
 
 
@@ -130,16 +140,11 @@ def carry(
         yield
     if not driver.holds():
         driver.suck(False)
+        motions.carried = None
         tip = motions.tip_m()
         raise ActionError(
             ToolFailure.LOST, f"it fell off near x = {tip[0]:.3f} m, y = {tip[1]:.3f} m"
         )
-
-
-def _bring_back(motions: ShelfMotions, thing: Cuboid, error: ActionError) -> Step:
-    """Put what is still held back to where it was."""
-    if error.failure is ToolFailure.NO_PLACE:
-        yield from put_down(motions, thing, thing.x_m, thing.y_m)
 
 
 def _touch(motions: ShelfMotions, touch: Floats) -> Step:

@@ -10,7 +10,7 @@ from robots.interfaces import Floats, MotionFailure, PoseGoal, Trajectory
 from robots.shelf_arm.driver import Guard, ShelfArmDriver
 from robots.shelf_arm.scene import LEVEL_TOOL, ShelfSize, closed_scene, open_scene
 from robots.shelf_arm.settings import ShelfArmSettings
-from robots.shelf_tool import ToolFailure
+from robots.shelf_tool import Cuboid, ToolFailure
 from robots.single_arm import PlannedArm
 
 Step = Generator[None, None, None]
@@ -53,7 +53,13 @@ class Slowed:
 
 
 class ShelfMotions:
-    """The tool's motions before and in a shelf; the tool stays level."""
+    """The tool's motions before and in a shelf; the tool stays level.
+
+    Attributes:
+        driver: Controllers of the arm, with their guard and the valve.
+        settings: Speeds and forces.
+        carried: What the cups hold and where it stood; None when they hold nothing.
+    """
 
     def __init__(
         self,
@@ -71,6 +77,7 @@ class ShelfMotions:
             settings: Speeds and forces.
         """
         self._arm, self.driver, self.settings = arm, driver, settings
+        self.carried: Cuboid | None = None
         self._open, self._closed = open_scene(shelf).boxes, closed_scene(shelf).boxes
 
     def tip_m(self) -> Floats:

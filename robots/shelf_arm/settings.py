@@ -31,7 +31,7 @@ class ShelfArmSettings:
 
     before_m: float = 0.05
     push_height_m: float = 0.042
-    cup_height_m: float = 0.038
+    cup_height_m: float = 0.042
     push_speed_m_s: float = 0.06
     entry_speed_m_s: float = 0.15
     touch_speed_m_s: float = 0.04

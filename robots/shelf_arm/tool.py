@@ -1,6 +1,7 @@
 """`robots.shelf_tool.ShelfTool` by one planned arm with a bluction tool."""
 
 from collections.abc import Callable, Generator, Mapping
+from functools import partial
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -8,7 +9,7 @@ from scipy.spatial.transform import Rotation
 from executive.core.errors import DeviceError, InputError
 from executive.core.registry import closest
 from robots.interfaces import Floats
-from robots.shelf_arm.carrying import put_elsewhere, take_out
+from robots.shelf_arm.carrying import bring_back, put_elsewhere, take_out
 from robots.shelf_arm.driver import ShelfArmDriver
 from robots.shelf_arm.motions import ActionError, ShelfMotions
 from robots.shelf_arm.pushing import push
@@ -17,6 +18,7 @@ from robots.shelf_tool import (
     LookFrom,
     PushAlong,
     PutElsewhere,
+    TakeOut,
     ToolAction,
     ToolResult,
     ToolShape,
@@ -124,15 +126,18 @@ class ArmShelfTool:
         return self._driver.held() or not self._driver.state().moving
 
     def _routine_of(self, action: ToolAction) -> Routine:
-        if isinstance(action, LookFrom):
-            return self._look(self._pose(action.viewpoint), action.viewpoint)
-        if isinstance(action, LookAlong):
-            return self._look(action.T_shelf_camera, "")
-        if isinstance(action, PushAlong):
-            return self._safely(lambda: push(self._motions, self.shape, action))
-        if isinstance(action, PutElsewhere):
-            return self._safely(lambda: put_elsewhere(self._motions, action))
-        return self._safely(lambda: take_out(self._motions, action, self._counter_m))
+        match action:
+            case LookFrom(viewpoint=viewpoint):
+                look = partial(self._look, self._pose(viewpoint), viewpoint)
+                return self._safely(look)
+            case LookAlong(T_shelf_camera=T_shelf_camera):
+                return self._safely(partial(self._look, T_shelf_camera, ""))
+            case PushAlong():
+                return self._safely(partial(push, self._motions, self.shape, action))
+            case PutElsewhere():
+                return self._safely(partial(put_elsewhere, self._motions, action))
+            case TakeOut():
+                return self._safely(partial(take_out, self._motions, action, self._counter_m))
 
     def _pose(self, viewpoint: str) -> Floats:
         if viewpoint not in self._poses:
@@ -143,23 +148,23 @@ class ArmShelfTool:
     def _look(self, T_shelf_camera: Floats, name: str) -> Routine:
         T_shelf_tip = T_shelf_camera @ np.linalg.inv(self._T_tip_camera)
         quat_xyzw = Rotation.from_matrix(T_shelf_tip[:3, :3]).as_quat()
-        try:
-            yield from self._motions.free_to(T_shelf_tip[:3, 3], quat_xyzw=quat_xyzw)
-        except ActionError as error:
-            return ToolResult(error.failure, error.text)
+        yield from self._motions.free_to(T_shelf_tip[:3, 3], quat_xyzw=quat_xyzw)
         self.at = name
         return ToolResult(None, f"at the viewpoint {name}" if name else "there")
 
     def _safely(self, begin: Callable[[], Routine]) -> Routine:
-        """Do an action; where it fails, leave the shelf before the failure is told."""
+        """Do an action; where it fails, free the tool and leave the shelf before that is told."""
         try:
+            # What a stop has left in the cups goes back to where it was first.
+            yield from bring_back(self._motions)
             return (yield from begin())
         except ActionError as error:
             failure = error
         self._driver.guard(None)
         try:
+            yield from bring_back(self._motions)
             yield from self._motions.retreat()
         except ActionError as error:
-            text = f"{failure.text}; and the tool cannot come out: {error.text}"
+            text = f"{failure.text}; nor can the tool be freed: {error.text}"
             return ToolResult(failure.failure, text)
         return ToolResult(failure.failure, failure.text)
