@@ -214,6 +214,9 @@ def _entry_and_close(visits: Sequence[Visit], first: int, last: int) -> tuple[fl
     The thesis's rule asks that of the crossings that are left after cancelling, which may have
     lost the one that begins the knot to a strand that lies over it.
     """
-    entry = next(visit for visit in visits[first:] if not visit.over)
-    close = next(v for v in visits[first:] if v.crossing == entry.crossing and v is not entry)
-    return entry.arc, min(close.arc, visits[last].arc)
+    inside = visits[first : last + 1]
+    for k, entry in enumerate(inside):
+        for close in inside[k + 1 :]:
+            if not entry.over and close.crossing == entry.crossing:
+                return entry.arc, close.arc
+    return visits[first].arc, visits[last].arc

@@ -13,6 +13,7 @@ import cv2
 import numpy as np
 
 from perception.cable.crossings import CrossingSite, decide, find_sites
+from perception.cable.crowding import doubt_shared
 from perception.cable.mask import CableMask
 from perception.cable.observation import observe
 from perception.cable.tracers.centre_line import tangents
@@ -21,6 +22,8 @@ from perception.camera import GreyImage
 
 # However clear an image is, one crossing in a few hundred may be read wrongly.
 MOST_CERTAIN = 0.998
+# Nearer than this, a third strand hides the edges that evidence is taken from.
+SHARED_WIDTHS = 1.5
 
 
 def sample(image: GreyImage, places_px: Points) -> Points:
@@ -85,10 +88,12 @@ class EvidenceClassifier(ABC):
         observation = observe(image)
         if observation is None:
             return ()
-        return tuple(
+        width_px = observation.mask.width_px
+        decided = [
             decide(site, probability(self.evidence(image, observation.mask, site), self._gain))
-            for site in find_sites(traces, observation.mask.width_px)
-        )
+            for site in find_sites(traces, width_px)
+        ]
+        return doubt_shared(decided, SHARED_WIDTHS * width_px)
 
     @abstractmethod
     def evidence(self, image: GreyImage, mask: CableMask, site: CrossingSite) -> float:
