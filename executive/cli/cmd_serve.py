@@ -1,5 +1,6 @@
 """`cellwright serve`: hold a cell, and run the missions that clients ask for."""
 
+import logging
 import os
 import secrets
 from pathlib import Path
@@ -79,6 +80,9 @@ def _serve(
     from contextlib import ExitStack, suppress
 
     from executive.app.service.http import application
+
+    # What it says of clients that send garbage would fill a disk.
+    logging.getLogger("asyncua").setLevel(logging.CRITICAL)
     from executive.inspector.web.server import PageServer
 
     server = PageServer(application(service, token=token), host, port, most_at_once=200)

@@ -14,7 +14,7 @@ import asyncio
 import json
 import tempfile
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from concurrent.futures import Future
 from contextlib import suppress
 from pathlib import Path
@@ -249,12 +249,12 @@ def _variant_type(value: object) -> Any:
 
 
 def _starter(service: CellService) -> Callable[..., Any]:
-    async def start(_: object, mission: Any, seed: Any, settings: Any, key: Any) -> list[Any]:
+    async def start(_: object, *given: Any) -> list[Any]:
         from asyncua import ua
 
         number, error = 0, ""
         try:
-            request = _request(mission.Value, seed.Value, settings.Value, key.Value)
+            request = _request(*_values(given, ("Mission", "Seed", "Settings", "Key")))
             number = (await asyncio.to_thread(service.submit, request)).id
         except CellwrightError as refused:
             error = str(refused)
@@ -266,12 +266,25 @@ def _starter(service: CellService) -> Callable[..., Any]:
     return start
 
 
+def _values(given: Sequence[Any], names: Sequence[str]) -> list[Any]:
+    """Return the values of arguments, which asyncua passes on as they come.
+
+    Raises:
+        InputError: There are more or fewer than there should be.
+    """
+    if len(given) != len(names):
+        raise InputError(f"got {len(given)} arguments; expected {len(names)}: {', '.join(names)}")
+    return [one.Value for one in given]
+
+
 def _request(mission: Any, seed: Any, settings: Any, key: Any) -> MissionRequest:
     """Return what a controller asks for.
 
     Raises:
         InputError: It is none; says what is wrong.
     """
+    if not isinstance(settings, str | None):
+        raise InputError(f"Settings: got {type(settings).__name__}; expected text")
     if len(settings or "") > _LONGEST_SETTINGS:
         raise InputError(f"Settings: is too long; expected at most {_LONGEST_SETTINGS} characters")
     try:
@@ -287,7 +300,7 @@ def _request(mission: Any, seed: Any, settings: Any, key: Any) -> MissionRequest
 
 
 def _caller(act: Callable[[], CellState]) -> Callable[..., Any]:
-    async def call(_: object) -> list[Any]:
+    async def call(_: object, *_given: Any) -> list[Any]:
         from asyncua import ua
 
         error = ""

@@ -30,6 +30,9 @@ class MayBreak(Skill):
             os.kill(os.getpid(), signal.SIGKILL)
         if way == "slow":
             time.sleep(1.0)
+        while way == "long":
+            time.sleep(0.01)
+            yield
         while way == "hang":
             time.sleep(0.05)
         hoard = []
@@ -41,8 +44,8 @@ class MayBreak(Skill):
 MISSION = """
 format: 1
 mission: toy
-cell: dry
-timeout_s: 30.0
+cell: CELL
+timeout_s: 3000.0
 in:
   way: {type: str, default: well}
   level: {type: float, default: 0.5}
@@ -52,10 +55,12 @@ root: {skill: may_break, in: {way: $way, level: $level}, out: {claim: $claim}}
 """
 
 
-def write_toy(folder: Path) -> dict[str, str]:
+def write_toy(folder: Path, cell: str = "dry") -> dict[str, str]:
     """Write the mission and its skill, and return the environment in which they are found."""
+    if cell != "dry":
+        (folder / f"{cell}.yaml").write_text(f"format: 1\ncell: {cell}\nworld: dry\n")
     (folder / "toy_breaking.py").write_text(SKILL)
-    (folder / "toy.yaml").write_text(MISSION)
+    (folder / "toy.yaml").write_text(MISSION.replace("CELL", cell))
     info = folder / "toy_breaking-1.0.dist-info"
     info.mkdir()
     (info / "METADATA").write_text("Metadata-Version: 2.1\nName: toy-breaking\nVersion: 1.0\n")

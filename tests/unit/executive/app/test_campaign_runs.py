@@ -9,9 +9,8 @@ import time
 from pathlib import Path
 
 import pytest
-from toy_campaigns import cellwright, write_campaign, write_toy
+from toy_campaigns import cellwright, write_campaign
 
-from executive.app import catalogue
 from executive.app.campaigns.campaign import Campaign, Where
 from executive.app.campaigns.document import read_campaign
 from executive.app.campaigns.folder import LOCK, RESULTS, CampaignFolder
@@ -20,17 +19,6 @@ from executive.core.errors import InputError
 from executive.engine.recording.reader import Recording
 
 pytestmark = pytest.mark.filterwarnings("ignore::ResourceWarning")
-
-
-@pytest.fixture
-def toy(tmp_path, monkeypatch):
-    environment = write_toy(tmp_path)
-    monkeypatch.setenv("PYTHONPATH", environment["PYTHONPATH"])
-    monkeypatch.syspath_prepend(str(tmp_path))
-    monkeypatch.chdir(tmp_path)
-    catalogue.skills.cache_clear()
-    yield tmp_path
-    catalogue.skills.cache_clear()
 
 
 def campaign(folder, text, out="out"):
