@@ -58,6 +58,7 @@ class ShelfMotions:
     Attributes:
         driver: Controllers of the arm, with their guard and the valve.
         settings: Speeds and forces.
+        shelf: What the arm stands before.
         carried: What the cups hold and where it stood; None when they hold nothing.
     """
 
@@ -77,6 +78,7 @@ class ShelfMotions:
             settings: Speeds and forces.
         """
         self._arm, self.driver, self.settings = arm, driver, settings
+        self.shelf = shelf
         self.carried: Cuboid | None = None
         self._open, self._closed = open_scene(shelf).boxes, closed_scene(shelf).boxes
 

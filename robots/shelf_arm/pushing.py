@@ -15,6 +15,8 @@ from robots.shelf_tool import PushAlong, ToolFailure, ToolResult, ToolShape
 _ALONGSIDE = 0.6
 # A push that moves an object by less has moved nothing [m].
 _LEAST_SHIFT_M = 0.002
+# A wall that stands where it should is felt by then [m].
+_INTO_WALL_M = 0.008
 # What it takes to slide an object is learnt over that way [m].
 _LEARNING_M = 0.008
 # Nothing that stands in shelves is lighter [kg/m3] or smoother.
@@ -47,7 +49,7 @@ def push(
     lane = _lane(motions, shape, action)
     before_m = -motions.settings.before_m
     inward = np.array([0.0, lane.tip_m - before_m, 0.0])
-    along = np.array([lane.sign * (lane.gap_m + abs(action.shift_m)), 0.0, 0.0])
+    along = np.array([lane.sign * (lane.gap_m + _way_m(motions, action)), 0.0, 0.0])
     start = np.array([lane.x_m, before_m, lane.height_m])
     yield from motions.free_to(start, inward, along)
     yield from _go_in(motions, action, lane, inward)
@@ -72,6 +74,15 @@ def _lane(motions: ShelfMotions, shape: ToolShape, action: PushAlong) -> _Lane:
         gap_m=0.5 * shape.blade_m - CUP_RADIUS_M,
         sign=sign,
     )
+
+
+def _way_m(motions: ShelfMotions, action: PushAlong) -> float:
+    """Return how far to push: as far as is asked, and not far into a wall."""
+    half_m = 0.5 * action.thing.size_m[0]
+    to_wall_m = action.thing.x_m - half_m
+    if action.shift_m > 0.0:
+        to_wall_m = motions.shelf.width_m - action.thing.x_m - half_m
+    return min(abs(action.shift_m), max(to_wall_m, 0.0) + _INTO_WALL_M)
 
 
 def _go_in(
