@@ -18,6 +18,7 @@ from pydantic import BaseModel, ConfigDict
 
 from executive.core.errors import InputError
 from perception.cable.observation import Observe
+from perception.cable.plug_ends import find_ends
 from perception.cable.polyline import pixels_of
 from perception.cable.tracers.evidence import FEATURES, NONE_FEATURES, doubts, evidence
 from perception.cable.tracers.hypotheses import Hypothesis, hypotheses
@@ -25,6 +26,7 @@ from perception.cable.tracers.outward import judged
 from perception.cable.tracers.search import SearchConfig
 from perception.cable.tracers.starts import from_start
 from perception.cable.tracers.steps import StepModel
+from perception.cable.tracers.stretches import stretches_px
 from perception.cable.tracers.survey import Survey, View, survey, view_from
 from perception.cable.types import Endpoint, Points, Trace, TraceEnd
 from perception.camera import GreyImage
@@ -161,7 +163,13 @@ class PosteriorTracer:
         observation = self._observe(image) if self._observe is not None else None
         if observation is None or not _holds(observation.mask.cable, start_px):
             return view_from(image, start_px)
-        return View(observation.mask.width_px, observation.mask.cable)
+        mask, graph = observation.mask, observation.graph
+        return View(
+            mask.width_px,
+            mask.cable,
+            stretches=stretches_px(observation),
+            dead_ends=find_ends(mask, graph),
+        )
 
     def _survey_ends(
         self,

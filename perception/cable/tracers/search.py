@@ -6,14 +6,20 @@ once.
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import partial
 
 from perception.cable.tracers.leaps import leap
 from perception.cable.tracers.modes import find_modes
 from perception.cable.tracers.paths import Ends, Path, checked
 from perception.cable.tracers.rivals import RivalConfig, reduced
 from perception.cable.tracers.steps import Outlook, StepModel
+from perception.cable.tracers.stretches import Stretches
 from perception.cable.types import TraceEnd
 from perception.models.frames import ScaledImage
+from perception.models.tracer_crop import HERE, STEP
+
+# No cable goes on farther back than this.
+BACK = 0.3 * STEP
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,6 +32,7 @@ class SearchConfig:
         least: Ways less likely than this are not followed.
         lost: Without any way or end more likely than this, a path is lost.
         end_odds: How often a step meets an end of the cable, over how often it did in training.
+        dead_end_odds: The same where what is seen of the cable ends as well.
         window: Paths less likely than the best by this factor are dropped [nats].
         most_looks: After so many looks for each start what still goes on is lost.
         leaps: Whether a look may give more than one step.
@@ -37,10 +44,24 @@ class SearchConfig:
     least: float = 0.05
     lost: float = 0.08
     end_odds: float = 0.15
+    dead_end_odds: float = 1.0
     window: float = 4.5
     most_looks: int = 400
     leaps: bool = True
     rivals: RivalConfig = field(default_factory=RivalConfig)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Sketch:
+    """What is known of the cables in an image before they are followed.
+
+    Attributes:
+        stretches: Where they lie alone.
+        dead_ends: Where what is seen of them ends; many of these are no ends of a cable.
+    """
+
+    stretches: Stretches
+    dead_ends: Ends
 
 
 class Search:
@@ -53,19 +74,26 @@ class Search:
         starts: First paths.
         ends: Where paths may finish.
         config: Settings.
+        sketch: What is known of the cable, if anything is.
     """
 
-    def __init__(self, starts: Sequence[Path], ends: Ends, config: SearchConfig) -> None:
+    def __init__(
+        self,
+        starts: Sequence[Path],
+        ends: Ends,
+        config: SearchConfig,
+        sketch: Sketch | None = None,
+    ) -> None:
         self.alive = list(starts)
         self._done: list[Path] = []
-        self._ends, self._config = ends, config
+        self._ends, self._config, self._sketch = ends, config, sketch
 
     def advance(self, image: ScaledImage, outlooks: Sequence[Outlook]) -> None:
         """Go on by one look for each path that is alive."""
         ahead = [
             way
             for path, outlook in zip(self.alive, outlooks, strict=True)
-            for way in self._ways(image, path, outlook)
+            for way in map(partial(self._run_on, image), self._ways(image, path, outlook))
         ]
         rivals = reduced(self._done + ahead, self._config.rivals)
         floor = rivals[0].log_probability - self._config.window
@@ -81,8 +109,10 @@ class Search:
     def _ways(self, image: ScaledImage, path: Path, outlook: Outlook) -> list[Path]:
         """Return every way in which a path may go on or end."""
         config = self._config
-        modes = find_modes(outlook.cells, config.least, config.modes)
-        end = config.end_odds * outlook.end
+        found = find_modes(outlook.cells, config.least, config.modes)
+        modes = [mode for mode in found if mode.point_crop[0] > HERE[0] - BACK]
+        is_dead = self._sketch is not None and self._sketch.dead_ends.reached(path) is not None
+        end = (config.dead_end_odds if is_dead else config.end_odds) * outlook.end
         believed = [end, *(mode.probability for mode in modes)]
         # What lies beside the modes is the blur of the map, unless that is most of it.
         total = max(sum(believed), 0.5)
@@ -99,8 +129,17 @@ class Search:
         if end > config.least:
             ways.append(path.ended(TraceEnd.ENDPOINT, end / total))
         if max(believed) < config.lost:
-            ways.append(path.ended(TraceEnd.LOST, config.lost))
+            why = TraceEnd.ENDPOINT if is_dead else TraceEnd.LOST
+            ways.append(path.ended(why, config.lost))
         return ways
+
+    def _run_on(self, image: ScaledImage, path: Path) -> Path:
+        """Return the path up to the end of the stretch that it has come to."""
+        points = self._sketch.stretches.ahead(path.points) if self._sketch is not None else ()
+        for point in points:
+            if path.end is None:
+                path = self._checked(image, path.extended(point, 1.0))
+        return path
 
     def _checked(self, image: ScaledImage, path: Path) -> Path:
         return checked(path, image, self._ends)

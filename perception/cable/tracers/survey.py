@@ -5,16 +5,17 @@ are known as well.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
 from perception.cable.tracers.paths import Ends, Path
-from perception.cable.tracers.search import Search, SearchConfig, run_searches
+from perception.cable.tracers.search import Search, SearchConfig, Sketch, run_searches
 from perception.cable.tracers.starts import first_paths
 from perception.cable.tracers.steps import StepModel
+from perception.cable.tracers.stretches import Stretches
 from perception.cable.types import Endpoint, Points
 from perception.cable.width import mask_under, width_with
 from perception.camera import GreyImage
@@ -39,15 +40,19 @@ class View:
         width_px: Width of the cables.
         cable: Which pixels show cable or connector, shape (height, width).
         scale: That width over the one that was measured.
+        stretches: Pieces of cable that lie alone, shape (N, 2) each.
+        dead_ends: Where the mask of a cable ends; many of these are no ends of a cable.
     """
 
     width_px: float
     cable: Bools
     scale: float = 1.0
+    stretches: tuple[Points, ...] = ()
+    dead_ends: tuple[Endpoint, ...] = ()
 
     def wider(self, by: float) -> "View":
         """Return the same with cables so many times as wide."""
-        return View(by * self.width_px, self.cable, by * self.scale)
+        return replace(self, width_px=by * self.width_px, scale=by * self.scale)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -109,8 +114,9 @@ def survey(
     begun = [_as_end(start, own, scaled) for start, own in zip(starts_px, paths, strict=True)]
     ends = Ends.of([*begun, *far], scaled)
     paths += [first_paths(end.position_px[None], [end], scaled) for end in far]
+    sketch = Sketch(Stretches(view.stretches, scaled), Ends.of(view.dead_ends, scaled))
     searches = [
-        Search(own, ends.without(ends.points[number], OWN_END_WIDTHS * WIDTH), config)
+        Search(own, ends.without(ends.points[number], OWN_END_WIDTHS * WIDTH), config, sketch)
         for number, own in enumerate(paths)
     ]
     run_searches(model, scaled, searches, config.most_looks)
