@@ -10,14 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from perception.camera import CameraModel
+from perception.shelf.slabs import cast_boxes
 from perception.shelf.types import Floats
 
 Ints = NDArray[np.int64]
 
 # A ray along a plane would divide by nothing.
 PARALLEL = 1e-12
-# So many boxes are cast together: all in one take more memory than is fast.
-BATCH = 64
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -70,14 +69,15 @@ class BoxCaster:
             Pixels inside the image only, box after box.
         """
         first, last = self._windows(low_m, high_m)
-        # Boxes next to each other in the list have windows of much the same size.
-        parts = [
-            self._cast_some(low_m[at:to], high_m[at:to], first[at:to], last[at:to], at)
-            for at, to in ((at, at + BATCH) for at in range(0, len(low_m), BATCH))
-        ]
-        if not parts:
-            return Silhouettes(np.zeros(0, np.int64), np.zeros(0), np.zeros(0, np.int64), 0)
-        pixel, depth_m, box = (np.concatenate(arrays) for arrays in zip(*parts, strict=True))
+        limit = np.array([self.camera.height_px, self.camera.width_px]) - 1
+        pixel, depth_m, box = cast_boxes(
+            self._inverse,
+            low_m - self.origin_m,
+            high_m - self.origin_m,
+            np.clip(first, 0, limit + 1),
+            np.clip(last, -1, limit),
+            self.camera.width_px,
+        )
         return Silhouettes(pixel, depth_m, box, len(low_m))
 
     def inside(self, low_m: Floats, high_m: Floats) -> tuple[Floats, Floats]:
@@ -96,22 +96,6 @@ class BoxCaster:
         points_px = self.camera.project(points_m.reshape(-1, 3)).reshape(-1, 8, 2)[..., ::-1]
         first = np.floor(points_px.min(axis=1)).astype(np.int64)
         return first, np.ceil(points_px.max(axis=1)).astype(np.int64)
-
-    def _cast_some(
-        self, low_m: Floats, high_m: Floats, first: Ints, last: Ints, number: int
-    ) -> tuple[Ints, Floats, Ints]:
-        size = (last - first + 1).max(axis=0)
-        rows = first[:, 0, None, None] + np.arange(size[0])[None, :, None]
-        columns = first[:, 1, None, None] + np.arange(size[1])[None, None, :]
-        inside = (rows >= 0) & (rows < self.camera.height_px)
-        inside = inside & (columns >= 0) & (columns < self.camera.width_px)
-        pixel = (rows * self.camera.width_px + columns)[inside]
-        box = np.repeat(np.arange(len(first)), inside.sum(axis=(1, 2)))
-        near, far = _clip(
-            self._inverse[pixel], low_m[box] - self.origin_m, high_m[box] - self.origin_m
-        )
-        hit = (near <= far) & (near > 0.0)
-        return pixel[hit], near[hit], box[hit] + number
 
 
 def _clip(inverse: Floats, low_m: Floats, high_m: Floats) -> tuple[Floats, Floats]:

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.ndimage import find_objects
 
 from perception.shelf.casting import BoxCaster
 from perception.shelf.types import Bools, Box, Floats, Shelf, ShelfView, Sighting, Size
@@ -35,13 +36,26 @@ def sightings(
     depth_m = view.depth_m.astype(np.float64)
     points_m = caster.origin_m + depth_m[..., None] * caster.rays
     found = []
-    for index, label in enumerate(view.labels):
-        mask = view.segments == index
-        known = mask & np.isfinite(depth_m)
+    for index, window in enumerate(_windows(view)):
+        label = view.labels[index]
+        if window is None:
+            continue
+        known = (view.segments[window] == index) & np.isfinite(depth_m[window])
         if known.any():
-            box, sure = _boxes(points_m, depth_m, known, sizes_m.get(label), shelf, caster)
-            found.append(Sighting(label, mask, box, sure))
+            size_m = sizes_m.get(label)
+            box, sure = _boxes(points_m[window], depth_m[window], known, size_m, shelf, caster)
+            found.append(Sighting(label, view.segments == index, box, sure))
     return tuple(found)
+
+
+def _windows(view: ShelfView) -> list[tuple[slice, slice] | None]:
+    """Return the part of the image that holds each object, and a pixel around it."""
+    windows: list[tuple[slice, slice] | None] = [None] * len(view.labels)
+    for index, found in enumerate(find_objects(view.segments + 1, len(view.labels))):
+        if found is not None:
+            rows, columns = (slice(max(0, one.start - 1), one.stop + 1) for one in found)
+            windows[index] = rows, columns
+    return windows
 
 
 @dataclass(frozen=True, slots=True)

@@ -153,15 +153,16 @@ class _Search:
 
     def __init__(self, situation: Situation, depth: Depth) -> None:
         self._situation, self._depth = situation, depth
-        poses, weights = _blocks(situation, depth.block_m)
-        whole = outlook(situation.camera, situation.places_m[poses], situation.target_m)
-        kept = _likely(weights)
-        self._view, self._weights = restricted(whole, kept), weights[kept]
-        self._weights = self._weights / self._weights.sum()
         self._inputs = kernel_inputs(situation, depth)
+        poses, weights = _blocks(situation, depth.block_m)
+        self._view = outlook(situation.camera, situation.places_m[poses], situation.target_m)
+        weights = self._hidden(weights)
+        kept = _likely(weights)
+        self._view = restricted(self._view, kept)
+        self._weights = weights[kept] / weights[kept].sum()
 
     def best(self) -> Plan | None:
-        start = self._start()
+        start = _Branch(self._inputs.boxes, self._weights, 1.0, 1.0, np.inf)
         beam, done = [start], list[_Branch]()
         for _ in range(self._depth.moves):
             longer = _best([child for branch in beam for child in self._children(branch)],
@@ -177,13 +178,16 @@ class _Search:
         first = min(ends, key=lambda branch: branch.cost)
         return Plan(first.moves, first.shows[0], first.cost)
 
-    def _start(self) -> _Branch:
-        boxes = self._inputs.boxes
-        # A pose that would show already, by a hair of its block, is as hidden as its neighbours.
-        seen, shown, _ = self._assess(boxes, self._weights)
-        weights = np.where(seen == 1, 0.0, self._weights) if shown < 1.0 else self._weights
-        weights = weights / weights.sum()
-        return _Branch(boxes, weights, 1.0, 1.0, np.inf)
+    def _hidden(self, weights: Floats) -> Floats:
+        """Return the weights of the poses that do not show already, by a hair of their block.
+
+        Where that leaves none, what is believed is wrong somewhere: anything hidden may be it.
+        """
+        seen, _, _ = self._assess(self._inputs.boxes, np.ones(len(weights)))
+        hidden = np.where(seen == 1, 0.0, weights)
+        if hidden.sum() > 0.0:
+            return hidden
+        return np.where(seen == 1, 0.0, 1.0) if (seen == 0).any() else weights
 
     def _children(self, branch: _Branch) -> list[_Branch]:
         """Return the branch with each of the best next moves, not yet carried out."""
