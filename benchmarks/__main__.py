@@ -14,6 +14,7 @@ BENCHMARKS = {
     "affinity": ("benchmarks.affinity", "what language models know of shelves, beside a taxonomy"),
     "detection": ("benchmarks.detection", "labelled products on shelves, by looks, text, company"),
     "motion": ("benchmarks.motion", "kinematics, collisions, plans and limits of the arms"),
+    "campaigns": ("benchmarks.campaigns", "missions an hour, overhead, memory of campaigns"),
     "resuming": ("benchmarks.resuming", "untangling missions that are killed and gone on with"),
     "beliefs": ("benchmarks.beliefs", "P(knotted), P(knot) and what to ask next, without images"),
     "certificates": ("benchmarks.certificates", "knotted or not, with proofs that are replayed"),

@@ -1,7 +1,7 @@
 """A campaign from its document to its last run."""
 
 import os
-from collections.abc import Iterator
+from collections.abc import Generator
 from contextlib import closing
 from dataclasses import dataclass
 from datetime import UTC, datetime
@@ -76,7 +76,7 @@ class Campaign:
         with FileLock(self.folder.lock, f"the campaign {self.folder.folder}"):
             self.folder.resume(self._plan())
 
-    def run(self, where: Where, *, again: bool = False) -> Iterator[RunRecord]:
+    def run(self, where: Where, *, again: bool = False) -> Generator[RunRecord, None, None]:
         """Run what has no result yet, keep each result, and yield it.
 
         Args:
