@@ -1,19 +1,24 @@
-"""How fast the cable's physics is, beside a PyBullet chain, and whether it keeps knots.
+"""The cable's physics: its laws, its speed beside a PyBullet chain, worlds that repeat.
 
-Both worlds do the same: 3 m of cable with an overhand knot's centre line lie on a table, one
-end is held and pulled sideways at 0.25 m/s. Each pair of timings is taken in turn, so that a
-noisy machine slows both. Seconds are those of the process on its core: on a quiet machine wall
-seconds, and on a shared one what is left of them.
+For the speed, both worlds do the same: 3 m of cable with an overhand knot's centre line lie on a
+table, one end is held and pulled sideways at 0.25 m/s. Each pair of timings is taken in turn, so
+that a noisy machine slows both. Seconds are those of the process on its core: on a quiet machine
+wall seconds, and on a shared one what is left of them.
 """
 
+import subprocess
+import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from itertools import pairwise
+from math import ceil
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from benchmarks.cable_laws import laws
+from benchmarks.cable_worlds import world_digest
 from benchmarks.harness import Row, median, share
 from perception.cable.topology import Knottedness, classify_curve
 from simulation.cable.configurations import starting_configuration
@@ -23,6 +28,7 @@ Floats = NDArray[np.float64]
 PULL_M_S = 0.25
 STEP_S = 1.0 / 240.0
 CAPSULES = 250
+LENGTHS = (100, 300, 1000)
 
 
 def run(quick: bool, seed: int) -> Sequence[Row]:
@@ -37,11 +43,57 @@ def run(quick: bool, seed: int) -> Sequence[Row]:
     ratios = [chain / rod for rod, chain in zip(ours, theirs, strict=True)]
     kept = [_keeps_its_knot(seed + number) for number in range(pulls)]
     return [
+        *laws(quick, seed),
+        *_speeds(1 if quick else 5),
+        *_worlds(5.0 if quick else 60.0, seed),
         median("realtime_factor_301", [1.0 / cpu for cpu in ours], "1", ">= 5"),
         median("ratio_to_pybullet_chain", ratios, "1", ">= 15"),
         median("pybullet_realtime_factor_250", [1.0 / cpu for cpu in theirs], "1"),
         share("knots_kept_in_pulls", sum(kept), len(kept), "= 1"),
     ]
+
+
+def _speeds(pairs: int) -> Iterator[Row]:
+    """Time cables of several lengths that are pulled, beside chains of as many capsules."""
+    for nodes in LENGTHS:
+        nodes_m = _serpentine(nodes)
+        _rod_cpu_s(nodes_m, 0.02)
+        seconds, chain_s = 200.0 / nodes, 6.0 / nodes
+        ours, theirs = [], []
+        for _ in range(pairs):
+            ours.append(_rod_cpu_s(nodes_m, seconds) / seconds)
+            theirs.append(_pybullet_cpu_s(nodes_m, chain_s, nodes - 1) / chain_s)
+        ratios = [chain / rod for rod, chain in zip(ours, theirs, strict=True)]
+        yield median(f"realtime_factor_{nodes}_nodes", [1.0 / cpu for cpu in ours], "1")
+        yield median(f"ratio_to_pybullet_chain_{nodes}", ratios, "1")
+
+
+def _serpentine(nodes: int) -> Floats:
+    """Return a cable that lies in rows beside each other, 4 cm apart."""
+    spacing_m, row_m, turn_m = 0.01, 0.6, 0.02
+    rows = ceil(nodes * spacing_m / row_m) + 1
+    corners = []
+    for row in range(rows):
+        ends = (-0.5 * row_m, 0.5 * row_m) if row % 2 == 0 else (0.5 * row_m, -0.5 * row_m)
+        corners += [(x, 2.0 * turn_m * row - 0.3) for x in ends]
+        way = 1.0 if row % 2 == 0 else -1.0
+        arc = np.linspace(0.0, np.pi, 12)[1:-1]
+        bend = np.column_stack([way * turn_m * np.sin(arc), turn_m * (1.0 - np.cos(arc))])
+        corners += [tuple(corners[-1] + step) for step in bend]
+    points = np.array(corners)
+    along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
+    arcs = spacing_m * np.arange(nodes)
+    flat = [np.interp(arcs, along, points[:, axis]) for axis in range(2)]
+    return np.column_stack([*flat, np.full(nodes, 0.0033)])
+
+
+def _worlds(seconds: float, seed: int) -> Iterator[Row]:
+    """Let the same world go on here and in a second process; compare them bit by bit."""
+    here = world_digest(seed, seconds)
+    command = [sys.executable, "-m", "benchmarks.cable_worlds", str(seed), str(seconds)]
+    there = subprocess.run(command, capture_output=True, text=True, check=True)
+    same = here == there.stdout.strip()
+    yield share("bit_equal_in_second_process", int(same), 1, "= 1")
 
 
 def _rod_cpu_s(nodes_m: Floats, seconds: float) -> float:
@@ -87,7 +139,7 @@ def _keeps_its_knot(seed: int) -> bool:
     return classify_curve(rod.positions_m).state is Knottedness.KNOTTED
 
 
-def _pybullet_cpu_s(nodes_m: Floats, seconds: float) -> float:
+def _pybullet_cpu_s(nodes_m: Floats, seconds: float, capsules: int = CAPSULES) -> float:
     """Time a chain of capsules on point-to-point constraints, pulled the same way."""
     import pybullet
     from pybullet_utils.bullet_client import BulletClient
@@ -95,9 +147,9 @@ def _pybullet_cpu_s(nodes_m: Floats, seconds: float) -> float:
     client = BulletClient(pybullet.DIRECT)
     client.setGravity(0.0, 0.0, -9.81)
     client.setPhysicsEngineParameter(fixedTimeStep=STEP_S, numSolverIterations=50)
-    bodies = _chain(client, pybullet, nodes_m)
+    bodies = _chain(client, pybullet, nodes_m, capsules)
     began_s = time.process_time()
-    for step in range(round(seconds / STEP_S)):
+    for step in range(max(1, round(seconds / STEP_S))):
         client.resetBasePositionAndOrientation(
             bodies[0], nodes_m[0] + np.array([PULL_M_S * (step + 1) * STEP_S, 0.0, 0.0]), _UPRIGHT
         )
@@ -110,14 +162,14 @@ def _pybullet_cpu_s(nodes_m: Floats, seconds: float) -> float:
 _UPRIGHT = (0.0, 0.0, 0.0, 1.0)
 
 
-def _chain(client: Any, pybullet: Any, nodes_m: Floats) -> list[int]:
+def _chain(client: Any, pybullet: Any, nodes_m: Floats, capsules: int) -> list[int]:
     plane = client.createCollisionShape(pybullet.GEOM_PLANE)
     client.createMultiBody(0.0, plane)
-    arcs = np.linspace(0.0, len(nodes_m) - 1.0, CAPSULES + 1)
+    arcs = np.linspace(0.0, len(nodes_m) - 1.0, capsules + 1)
     points = np.column_stack(
         [np.interp(arcs, np.arange(len(nodes_m)), nodes_m[:, axis]) for axis in range(3)]
     )
-    half_m = 3.0 / CAPSULES / 2.0
+    half_m = float(np.linalg.norm(np.diff(nodes_m, axis=0), axis=1).sum()) / capsules / 2.0
     shape = client.createCollisionShape(
         pybullet.GEOM_CAPSULE, radius=0.0033, height=2.0 * half_m - 0.0066
     )
