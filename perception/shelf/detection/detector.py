@@ -13,7 +13,7 @@ from perception.rgbd import RgbdFrame
 from perception.shelf.detection.appearance import AppearanceModel, features_of
 from perception.shelf.detection.reading import TextLine, TextReader
 from perception.shelf.detection.segmenting import ShelfPoints, segmented, shelf_points
-from perception.shelf.detection.wording import TextModel, Wording
+from perception.shelf.detection.wording import TextModel, Wording, plain
 from perception.shelf.detections import Detections
 from perception.shelf.types import NOTHING, Floats, Segments, Shelf
 
@@ -183,10 +183,12 @@ def _object_before(point_m: Floats, objects: Objects) -> int:
 
 
 def _texts(lines: Sequence[TextLine]) -> tuple[str, str]:
-    """Return all text, and what of it is written large."""
+    """Return all text, and what of it is written large; what is said twice counts once."""
     largest = max(line.height_px for line in lines)
-    title = [line.text for line in lines if line.height_px >= TITLE_SHARE * largest]
-    return " ".join(line.text for line in lines), " ".join(title)
+    title = {
+        plain(line.text): line.text for line in lines if line.height_px >= TITLE_SHARE * largest
+    }
+    return " ".join(line.text for line in lines), " ".join(title.values())
 
 
 def _doubt(readings: Floats) -> Floats:

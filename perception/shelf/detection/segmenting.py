@@ -9,18 +9,23 @@ from dataclasses import dataclass
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 from scipy.ndimage import distance_transform_edt, label
 
 from perception.rgbd import RgbdFrame
 from perception.shelf.casting import BoxCaster
 from perception.shelf.types import NOTHING, Bools, Floats, Segments, Shelf
 
+Ints = NDArray[np.int64]
+
 # A jump between neighbouring pixels that is no noise any more.
 STEP_M = 0.004
+# The same between columns of a patch, whose noise is that of many pixels: height and distance.
+PROFILE_STEP_M = np.array([0.003, 0.002])
 # Nearer to a wall than this is the wall.
 WALL_M = 0.008
-# Smallest object, as a share of the image; smaller patches are noise or slivers.
-LEAST_SHARE = 6e-5
+# Smallest object, as a share of the image's width squared; smaller patches are noise or slivers.
+LEAST_SHARE = 7e-5
 # So far around an upper edge its height is looked at, as a share of the image's width.
 EDGE_SHARE = 0.004
 
@@ -62,9 +67,9 @@ def segmented(points: ShelfPoints) -> Segments:
     y_m = points.points_m[..., 1]
     calm = points.things & ~_jumps(y_m)
     numbers, _ = label(calm)
-    numbers = _large(numbers, round(LEAST_SHARE * numbers.size))
-    numbers = _split_by_height(numbers, points)
-    numbers = _joined_behind(_large(numbers, round(LEAST_SHARE * numbers.size)), points)
+    least_px = round(LEAST_SHARE * numbers.shape[1] ** 2)
+    numbers = _split_by_profile(_large(numbers, least_px), points)
+    numbers = _joined_behind(_large(numbers, least_px), points)
     return _grown(numbers, points.things)
 
 
@@ -87,15 +92,14 @@ def _large(numbers: Segments, least_px: int) -> Segments:
     return np.asarray(renumbered[numbers], dtype=np.int16)
 
 
-def _split_by_height(numbers: Segments, points: ShelfPoints) -> Segments:
-    """Cut patches where the height of their upper edge jumps."""
+def _split_by_profile(numbers: Segments, points: ShelfPoints) -> Segments:
+    """Cut patches where the height of their upper edge jumps, or their mean distance does."""
     split, last = numbers.copy(), int(numbers.max())
     reach_px = max(2, round(EDGE_SHARE * numbers.shape[1]))
     for number in range(1, int(numbers.max()) + 1):
         patch = numbers == number
         columns = np.flatnonzero(patch.any(axis=0))
-        tops_m = points.points_m[patch[:, columns].argmax(axis=0), columns, 2]
-        starts = _steps(tops_m, reach_px)
+        starts = _steps(_profile(patch, columns, points), reach_px)
         for start, end in zip(starts, [*starts[1:], len(columns)], strict=True):
             last += 1
             part = np.zeros_like(patch)
@@ -104,19 +108,24 @@ def _split_by_height(numbers: Segments, points: ShelfPoints) -> Segments:
     return split
 
 
-def _steps(tops_m: Floats, reach_px: int) -> list[int]:
-    """Return where the pieces of an upper edge begin that have one height each."""
+def _profile(patch: Bools, columns: Ints, points: ShelfPoints) -> Floats:
+    """Return the height of the upper edge and the mean distance, column by column, shape (C, 2)."""
+    shown = patch[:, columns]
+    tops_m = points.points_m[shown.argmax(axis=0), columns, 2]
+    y_m = np.where(shown, points.points_m[:, columns, 1], 0.0)
+    return np.column_stack([tops_m, y_m.sum(axis=0) / shown.sum(axis=0)])
+
+
+def _steps(profile_m: Floats, reach_px: int) -> list[int]:
+    """Return where the pieces of a profile begin that have one value each."""
     starts = [0]
-    for at in range(reach_px, len(tops_m) - reach_px + 1):
-        before, behind = tops_m[max(starts[-1], at - reach_px) : at], tops_m[at : at + reach_px]
-        step_m = abs(float(np.median(before)) - float(np.median(behind)))
-        if step_m > 1.5 * STEP_M and at - starts[-1] >= reach_px and _calm(before, behind):
+    for at in range(reach_px, len(profile_m) - reach_px + 1):
+        before, behind = profile_m[at - reach_px : at], profile_m[at : at + reach_px]
+        step_m = np.abs(np.median(before, axis=0) - np.median(behind, axis=0))
+        calm = np.maximum(np.ptp(before, axis=0), np.ptp(behind, axis=0)) < 0.5 * step_m
+        if at - starts[-1] >= reach_px and bool((calm & (step_m > PROFILE_STEP_M)).any()):
             starts.append(at)
     return starts
-
-
-def _calm(before: Floats, behind: Floats) -> bool:
-    return bool(max(np.ptp(before), np.ptp(behind)) < STEP_M)
 
 
 @dataclass(frozen=True, slots=True)

@@ -22,9 +22,9 @@ BY_CHANCE = 2.0
 IDLE = 0.02
 # What is unknown is this likely before anything is read, beside one product.
 UNKNOWN = 0.5
-# A title of so many letters that names no product is that of an unknown one.
-TITLE_LETTERS = 4
-MOST_TITLE_LETTERS = 10
+# Letters of a title that no product accounts for speak for an unknown one, beyond a few.
+SPARE_LETTERS = 2
+MOST_STRANGE = 6
 # Letters and digits that readers take for each other are one.
 _ALIKE = str.maketrans({"0": "o", "1": "l", "i": "l", "5": "s", "8": "b"})
 _PADDING = 0
@@ -65,10 +65,11 @@ class TextModel:
             title: The part of it in large letters; None for all.
         """
         letters = _code(text)
-        agreeing = _evidence(letters, self._names) + _evidence(letters, self._brands)
+        names, brands = _aligned(letters, self._names), _aligned(letters, self._brands)
+        agreeing = np.maximum(names - BY_CHANCE, 0.0) + np.maximum(brands - BY_CHANCE, 0.0)
         size = len(plain(text if title is None else title))
-        strange = float(np.clip(size - TITLE_LETTERS, 0, MOST_TITLE_LETTERS - TITLE_LETTERS))
-        logits = PER_LETTER * np.append(agreeing, 0.5 * strange)
+        spare = size - float((names + brands).max()) - SPARE_LETTERS
+        logits = PER_LETTER * np.append(agreeing, np.clip(spare, 0.0, MOST_STRANGE))
         logits[-1] += np.log(UNKNOWN)
         powers = np.exp(logits - logits.max())
         read = powers / powers.sum()
@@ -85,10 +86,6 @@ def plain(text: str) -> str:
 def agreeing_letters(text: str, words: Sequence[str]) -> Floats:
     """Return how well each word is found in a text, in letters, shape (words,)."""
     return _aligned(_code(text), _codes(words))
-
-
-def _evidence(letters: NDArray[np.int64], words: NDArray[np.int64]) -> Floats:
-    return np.maximum(_aligned(letters, words) - BY_CHANCE, 0.0)
 
 
 def _aligned(letters: NDArray[np.int64], words: NDArray[np.int64]) -> Floats:
