@@ -8,7 +8,7 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
-from typing import TypeVar
+from typing import Protocol, TypeVar
 
 import numpy as np
 
@@ -28,6 +28,7 @@ from perception.shelf.semantic import column_semantics, floor_semantics
 from perception.shelf.sightings import sightings
 from perception.shelf.spatial import RunningMinimum, along_shelf, mask_occupancy
 from perception.shelf.types import Box, Floats, ShelfView, Sighting
+from simulation.shelf.cameras import front_camera
 from simulation.shelf.contents import MoveFailure, MoveResult
 from simulation.shelf.scenes import Scene
 from simulation.shelf.world import ShelfWorld
@@ -86,15 +87,33 @@ class Trial:
     choice_s: tuple[float, ...] = ()
 
 
+class SearchedShelf(Protocol):
+    """What a search looks into and acts on."""
+
+    def look(self) -> ShelfView:
+        """Take a view from the middle viewpoint; detection is perfect."""
+        ...
+
+    def act(self, move: Move) -> MoveResult:
+        """Do one action."""
+        ...
+
+    def visible_share(self, name: str) -> float:
+        """Return how much of an object's silhouette is seen, in [0, 1]; truth, for scoring."""
+        ...
+
+
 class Searcher:
     """Knows names, sizes of known objects and what it sees; nothing else about the scene."""
 
-    def __init__(self, scene: Scene, way: Way) -> None:
-        """Begin before the first look."""
+    def __init__(self, scene: Scene, way: Way, world: SearchedShelf | None = None) -> None:
+        """Begin before the first look, in a world without physics unless another is given."""
         self.way, self.target, self.shelf = way, scene.target, scene.shelf
-        self.world = ShelfWorld(scene, np.random.default_rng(0), reach=way.reach)
+        self.world: SearchedShelf = world or ShelfWorld(
+            scene, np.random.default_rng(0), reach=way.reach
+        )
         self.sizes = {name: box.size_m for name, box in zip(scene.names, scene.boxes, strict=True)}
-        self.caster = BoxCaster(self.world.camera)
+        self.caster = BoxCaster(front_camera(scene.shelf))
         self.poses = HiddenPoses(self.sizes[scene.target], self.shelf, self.caster)
         self.belief, self.minimum = PoseBelief(self.poses), RunningMinimum()
         self.original, self.contacts = OriginalScene(), Contacts()
