@@ -27,6 +27,7 @@ BENCHMARKS = {
         "benchmarks.inspecting",
         "an hour of recording in the page; cost of watching",
     ),
+    "shelf-cell": ("benchmarks.shelf_cell", "searches among boxes with physics, as in Table 7.6"),
     "sight": ("benchmarks.sight", "the detector beside the classic mask and ends"),
     "crossings": ("benchmarks.crossings", "over and under at crossings, where it is known"),
     "knots": ("benchmarks.knots", "first knots found: loose, dense and fake, by four systems"),
