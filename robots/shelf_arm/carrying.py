@@ -35,13 +35,22 @@ def take_out(
 
 
 def bring_back(motions: ShelfMotions) -> Step:
-    """Put what is still held back to where it was taken from; nothing when nothing is held."""
+    """Free the tool: what is still carried goes back to where it was taken from.
+
+    Raises:
+        ActionError: That cannot be, or it fell off.
+    """
     thing = motions.carried
-    if thing is None or not motions.driver.holds():
-        motions.carried = None
+    if thing is not None and motions.driver.holds():
+        yield from bring_out(motions, thing)
+        yield from put_down(motions, thing, thing.x_m, thing.y_m)
         return
-    yield from bring_out(motions, thing)
-    yield from put_down(motions, thing, thing.x_m, thing.y_m)
+    if motions.driver.holds():  # but it still stands where it stood
+        motions.driver.suck(False)
+        yield from motions.wait(_RELEASE_S)
+    motions.driver.suck(False)
+    motions.carried = None
+    yield from motions.retreat()
 
 
 def take(motions: ShelfMotions, thing: Cuboid) -> Step:
@@ -66,11 +75,12 @@ def take(motions: ShelfMotions, thing: Cuboid) -> Step:
         raise ActionError(ToolFailure.OBSTRUCTED, f"the cups met something at y = {at_m:.3f} m")
     driver.suck(True)
     yield from _touch(motions, touch)
+    motions.carried = thing
     yield from motions.line_by(up, settings.touch_speed_m_s)
     if not driver.holds():
+        motions.carried = None
         driver.suck(False)
         raise ActionError(ToolFailure.MISSED, "the cups let go as they took up the weight")
-    motions.carried = thing
 
 
 def bring_out(motions: ShelfMotions, thing: Cuboid) -> Step:

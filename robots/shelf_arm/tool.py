@@ -155,7 +155,7 @@ class ArmShelfTool:
     def _safely(self, begin: Callable[[], Routine]) -> Routine:
         """Do an action; where it fails, free the tool and leave the shelf before that is told."""
         try:
-            # What a stop has left in the cups goes back to where it was first.
+            # A stop may have left the tool in the shelf, or something in its cups.
             yield from bring_back(self._motions)
             return (yield from begin())
         except ActionError as error:
@@ -163,7 +163,6 @@ class ArmShelfTool:
         self._driver.guard(None)
         try:
             yield from bring_back(self._motions)
-            yield from self._motions.retreat()
         except ActionError as error:
             text = f"{failure.text}; nor can the tool be freed: {error.text}"
             return ToolResult(failure.failure, text)

@@ -42,6 +42,7 @@ class ShelfCell:
         camera: Sees from the tool.
         driver: Controllers of the arm.
         stock: What is known of the products beforehand.
+        scene: What stood there at first; truth, for scoring alone.
         search_camera: The camera at the middle viewpoint.
         settings: How the cell was set up.
         devices: Clock, tool, camera, driver and stock, by name.
@@ -68,15 +69,15 @@ class ShelfCell:
         scene_rng, matter_rng, force_rng, camera_rng = map(np.random.default_rng, seeds)
         shelf = Shelf()
         self.search_camera = front_camera(shelf, settings.camera.width_px)
-        self._scene = _scene(wanted, shelf, self.search_camera, scene_rng)
-        self.stock = stock_of(shipped_domain(wanted.domain), self._scene)
+        self.scene: Scene = _scene(wanted, shelf, self.search_camera, scene_rng)
+        self.stock = stock_of(shipped_domain(wanted.domain), self.scene)
         boxes = weighed(
-            self._scene.names,
-            self._scene.boxes,
+            self.scene.names,
+            self.scene.boxes,
             Matter(settings.matter.density_kg_m3, settings.matter.friction),
             matter_rng,
         )
-        size = _size(self._scene.shelf)
+        size = _size(self.scene.shelf)
         self._world = ShelfWorld(size, boxes, settings.tool, settings.physics.step_hz, force_rng)
         self.driver = self._world.driver
         self.tool = kinova_shelf_tool(
@@ -176,7 +177,7 @@ class ShelfCell:
         """Score the shelf as it stands now."""
         physics = self._world.physics
         shares = visible_shares(physics, self.search_camera)
-        return shelf_truth(self._scene, physics.box_poses(), shares)
+        return shelf_truth(self.scene, physics.box_poses(), shares)
 
     def _step(self) -> None:
         self._world.step()

@@ -25,7 +25,8 @@ def test_target_is_handed_over_on_the_counter() -> None:
     rig = Rig(heavy("a", (0.3, 0.1), BOX_M))
     assert rig.do(TakeOut(rig.thing("a"))).failure is None
     x_m, y_m, z_m = rig.pose("a")[:3]
-    assert x_m < -0.05 and 0.0 < y_m < 0.35
+    assert x_m < -0.05
+    assert 0.0 < y_m < 0.35
     assert z_m == pytest.approx(0.5 * BOX_M[2], abs=0.002)
 
 
@@ -70,7 +71,8 @@ def test_more_weight_never_helps() -> None:
         weight_n = mass_kg * 9.81
         force_n, torque_nm = np.array([0.0, weight_n, 0.0]), np.array([-0.03 * weight_n, 0.0, 0.0])
         held.append(not overloaded(force_n, torque_nm, CUPS_M, vacuum))
-    assert held[0] and not held[-1]
+    assert held[0]
+    assert not held[-1]
     assert held == sorted(held, reverse=True)
 
 

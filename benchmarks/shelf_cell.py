@@ -1,0 +1,214 @@
+"""Searches in the shelf cell with physics, by the protocol of the thesis's Table 7.6.
+
+Twelve pharmacy scenes, three each of 7, 8, 9 and 10 objects; a search ends when half of the target
+shows, or after two actions an object. The arm, contacts, friction and suction are simulated;
+detection is perfect, and depth is noisy. All policies search the same scenes. A target that shows,
+but not by half, is freed by one rule for all of them: move away what stands before it.
+
+With `--seed` other scenes; `CELLWRIGHT_SCENES=50` in the environment takes that many of them.
+"""
+
+import os
+import sys
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from benchmarks.harness import Row, mean, median, share
+from benchmarks.search_trials import Searcher, Way
+from perception.camera import CameraModel
+from perception.shelf.language.stored import stored_affinity
+from perception.shelf.planning.free_floor import CELL_M, free_cells
+from perception.shelf.planning.looking_ahead import ANYHOW, FIXED, Situation
+from perception.shelf.planning.moves import Move, Push
+from perception.shelf.planning.room import Reach
+from perception.shelf.planning.ways_out import freeing_move
+from perception.shelf.types import ShelfView, Sighting
+from robots.shelf_tool import (
+    Cuboid,
+    LookFrom,
+    PushAlong,
+    PutElsewhere,
+    ToolAction,
+    ToolFailure,
+    ToolResult,
+)
+from simulation.shelf.contents import MoveFailure, MoveResult
+from simulation.shelf_cell.cell import ShelfCell
+
+SEED = 880_001
+COUNTS = (7, 8, 9, 10)
+SCENES = 12
+# The share of the target that has to show.
+SHOWN = 0.5
+POLL_S = 0.1
+_FAILURES: Mapping[ToolFailure, MoveFailure] = {
+    ToolFailure.NO_BLADE_ROOM: MoveFailure.NO_BLADE,
+    ToolFailure.BLOCKED: MoveFailure.NO_ROOM,
+    ToolFailure.OBSTRUCTED: MoveFailure.OBSTRUCTED,
+    ToolFailure.NO_PLACE: MoveFailure.NO_PLACE,
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Search:
+    """How one search went.
+
+    Attributes:
+        found: Whether enough of the target shows.
+        actions: Pushes and places, those that failed included.
+        failures: Of these, how many failed.
+        toppled: Boxes that do not stand any more.
+        arm_s: Time on the robot's clock.
+    """
+
+    found: bool
+    actions: int
+    failures: int
+    toppled: int
+    arm_s: float
+
+
+class PhysicalShelf:
+    """The shelf cell as `benchmarks.search_trials` searches it; detection is perfect."""
+
+    def __init__(self, cell: ShelfCell) -> None:
+        """Bind a cell; the detector is told the truth."""
+        self._cell, self._detector = cell, cell.oracle_detector
+        self._seen: Mapping[str, Sighting] = {}
+
+    @property
+    def camera(self) -> CameraModel:
+        """The camera at the middle viewpoint."""
+        return self._cell.search_camera
+
+    def look(self) -> ShelfView:
+        """Take the camera to the middle viewpoint and look."""
+        self.do(LookFrom("centre"))
+        frame = self._cell.camera.capture()
+        found = self._detector.detect(frame)
+        labels = tuple(found.names[int(index)] for index in found.probabilities.argmax(axis=1))
+        return ShelfView(frame.depth_m, found.segments, labels, self.camera)
+
+    def know(self, seen: Sequence[Sighting]) -> None:
+        """Take note of where things were seen: it is there that the arm acts."""
+        self._seen = {sighting.label: sighting for sighting in seen}
+
+    def act(self, move: Move) -> MoveResult:
+        """Push or put elsewhere what was seen."""
+        box = self._seen[move.label].box
+        thing = Cuboid(box.x_m, box.y_m, box.size_m)
+        if isinstance(move, Push):
+            result = self.do(PushAlong(thing, move.shift_m))
+        else:
+            result = self.do(PutElsewhere(thing, move.x_m, move.y_m))
+        if result.failure is None:
+            return MoveResult(None, result.moved_m, result.met_m)
+        return MoveResult(_FAILURES.get(result.failure, MoveFailure.NOT_SEEN))
+
+    def visible_share(self, name: str) -> float:
+        """Return how much of the target shows; truth, for scoring."""
+        truth = self._cell.truth()
+        assert name == truth.target
+        return truth.visible_share
+
+    def do(self, action: ToolAction) -> ToolResult:
+        """Carry an action out to its end."""
+        self._cell.tool.start(action)
+        while (result := self._cell.tool.result()) is None:
+            self._cell.clock.sleep_until(self._cell.clock.now_s() + POLL_S)
+        return result
+
+
+def ways(reach: Reach) -> Mapping[str, Way]:
+    """Return the policies by name; none is told the taxonomy."""
+    affinity = stored_affinity("pharmacy")
+    return {
+        "spatial": Way("minimum", None, flat=True, reach=reach),
+        "heuristic": Way("masks", affinity, flat=True, reach=reach),
+        "s4": Way("minimum", affinity, flat=True, reach=reach),
+        "ours": Way("belief", affinity, "pose", calibrated=True, policy="ahead", reach=reach),
+    }
+
+
+def run(quick: bool, seed: int) -> Sequence[Row]:
+    """Search every scene by every policy."""
+    scenes = 2 if quick else int(os.environ.get("CELLWRIGHT_SCENES", SCENES))
+    found: dict[str, list[Search]] = {}
+    began_s = time.perf_counter()
+    for number in range(scenes):
+        scenario = {"domain": "pharmacy", "count": COUNTS[number % len(COUNTS)]}
+        for name in ways(Reach()):
+            went = _search(name, scenario, SEED + 1000 * seed + number)
+            found.setdefault(name, []).append(went)
+            _tell(f"{number + 1}/{scenes} {name}: {went}, {time.perf_counter() - began_s:.0f} s")
+    return _rows(found)
+
+
+def _search(name: str, scenario: Mapping[str, object], seed: int) -> Search:
+    cell = ShelfCell({"detector": "oracle"}, scenario, seed)
+    try:
+        shape = cell.tool.shape
+        reach = Reach(shape.blade_m, shape.overlap_m, shape.gap_m, shape.suction)
+        world = PhysicalShelf(cell)
+        searcher = Searcher(cell.scene, ways(reach)[name], world=world)
+        found, actions, failures = _searched(searcher, world, 2 * len(cell.scene.names))
+        return Search(found, actions, failures, cell.truth().toppled, cell.clock.now_s())
+    finally:
+        cell.close()
+
+
+def _searched(searcher: Searcher, world: PhysicalShelf, limit: int) -> tuple[bool, int, int]:
+    """Return whether the target was found, after how many actions, and how many of them failed."""
+    failures = 0
+    for actions in range(limit + 1):
+        if world.visible_share(searcher.target) >= SHOWN:
+            return True, actions, failures
+        if actions == limit:
+            break
+        view, seen = searcher.look()
+        world.know(seen)
+        move = _freeing(searcher, view, seen) or searcher.choose(view, seen)
+        if move is None:
+            return False, actions, failures
+        failures += searcher.act(move, seen).failure is not None
+    return False, limit, failures
+
+
+def _freeing(searcher: Searcher, view: ShelfView, seen: Sequence[Sighting]) -> Move | None:
+    """Return what frees a target that shows a little; None when it does not show."""
+    labels = tuple(sighting.label for sighting in seen)
+    if searcher.target not in labels:
+        return None
+    places_m = searcher.poses.places_m
+    situation = Situation(
+        searcher.shelf, searcher.way.reach, view.camera, labels,
+        tuple(sighting.box for sighting in seen),
+        np.array([FIXED if name == searcher.target else ANYHOW for name in labels]),
+        searcher.contacts.footprints, free_cells(view, searcher.shelf, searcher.caster), CELL_M,
+        searcher.sizes[searcher.target], places_m, np.full(len(places_m), 1.0 / len(places_m)),
+        searcher.been,
+    )  # fmt: skip
+    return freeing_move(situation, searcher.target)
+
+
+def _rows(found: Mapping[str, Sequence[Search]]) -> list[Row]:
+    rows = []
+    for name, searches in found.items():
+        goal = "<= 2.0" if name == "ours" else ""
+        hits = [search for search in searches if search.found]
+        rows.append(share(f"success {name}", len(hits), len(searches)))
+        if hits:
+            rows.append(mean(f"actions {name}", [each.actions for each in hits], "", goal))
+        rows.append(mean(f"toppled {name}", [each.toppled for each in searches], "", "<= 0"))
+        rows.append(mean(f"failed actions {name}", [each.failures for each in searches], ""))
+    every = [search for searches in found.values() for search in searches]
+    per_action = [each.arm_s / each.actions for each in every if each.actions]
+    rows.append(median("arm time an action", per_action, "s"))
+    return rows
+
+
+def _tell(text: str) -> None:
+    print(text, file=sys.stderr, flush=True)
