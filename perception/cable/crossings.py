@@ -48,7 +48,7 @@ def find_sites(traces: Sequence[Trace], width_px: float) -> tuple[CrossingSite, 
         traces: The traces.
         width_px: Width of the cables.
     """
-    lines = [resample(trace.points_px, SPACING_PX) for trace in traces]
+    lines = [_line(trace) for trace in traces]
     sites = [
         site
         for i in range(len(lines))
@@ -58,22 +58,47 @@ def find_sites(traces: Sequence[Trace], width_px: float) -> tuple[CrossingSite, 
     return tuple(sorted(sites, key=lambda site: (site.traces, site.arcs)))
 
 
-def _sites_between(lines: list[Points], i: int, j: int, width_px: float) -> list[CrossingSite]:
-    a, b, turn = intersections(lines[i], lines[j])
-    arcs_a, arcs_b = arc_lengths(lines[i]), arc_lengths(lines[j])
-    at_a = np.interp(a, np.arange(len(arcs_a)), arcs_a)
-    at_b = np.interp(b, np.arange(len(arcs_b)), arcs_b)
+@dataclass(frozen=True, slots=True, eq=False)
+class _Line:
+    """A trace in even steps, each point with its arc length on the trace itself.
+
+    The steps cut corners, so their own lengths would place crossings of a tight knot beside
+    where they are on the trace.
+    """
+
+    points: Points
+    arcs: Points
+
+
+def _line(trace: Trace) -> _Line:
+    points = resample(trace.points_px, SPACING_PX)
+    length_px = float(arc_lengths(trace.points_px)[-1])
+    return _Line(points, np.linspace(0.0, length_px, len(points)))
+
+
+def _sites_between(lines: list[_Line], i: int, j: int, width_px: float) -> list[CrossingSite]:
+    one, other = lines[i], lines[j]
+    a, b, turn = intersections(one.points, other.points)
+    at_a = np.interp(a, np.arange(len(one.arcs)), one.arcs)
+    at_b = np.interp(b, np.arange(len(other.arcs)), other.arcs)
     if i == j:
         once = at_b - at_a > SHORTEST_LOOP_WIDTHS * width_px
         at_a, at_b, turn = at_a[once], at_b[once], turn[once]
     return [
         CrossingSite(
-            point_at(lines[i], arcs_a, at_a[k]),
+            point_at(one.points, one.arcs, at_a[k]),
             (i, j),
-            (float(at_a[k] / arcs_a[-1]), float(at_b[k] / arcs_b[-1])),
-            np.stack([_tangent(lines[i], arcs_a, at_a[k]), _tangent(lines[j], arcs_b, at_b[k])]),
+            (float(at_a[k] / one.arcs[-1]), float(at_b[k] / other.arcs[-1])),
+            np.stack(
+                [
+                    _tangent(one.points, one.arcs, at_a[k]),
+                    _tangent(other.points, other.arcs, at_b[k]),
+                ]
+            ),
             int(turn[k]),
-            np.stack([_path(lines[i], arcs_a, at_a[k]), _path(lines[j], arcs_b, at_b[k])]),
+            np.stack(
+                [_path(one.points, one.arcs, at_a[k]), _path(other.points, other.arcs, at_b[k])]
+            ),
         )
         for k in _merge(at_a, at_b, turn, MERGE_WIDTHS * width_px)
     ]

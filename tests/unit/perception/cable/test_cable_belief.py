@@ -11,6 +11,7 @@ from perception.cable.belief import diagram_probability, knotted_probability, re
 from perception.cable.crossings import decide, find_sites
 from perception.cable.knots import find_knots, knot_intervals, likeliest_together
 from perception.cable.outcomes import likeliest_flips
+from perception.cable.polyline import arc_lengths, point_at
 from perception.cable.topology import curve_crossings
 from perception.cable.types import Crossing, Trace, TraceEnd
 
@@ -162,3 +163,14 @@ def test_a_noose_before_the_knot_is_no_knot():
     whole, crossings = seen(Drawing(np.vstack([bight, back, knot])))
     (found,) = find_knots((whole,), crossings)
     assert found.first_undercrossing_px[1] > 400.0
+
+
+def test_crossings_of_a_small_knot_lie_on_the_trace_where_they_are():
+    # Steps that cut corners must not shift what comes after them along the trace.
+    drawing = overhand((300.0, 300.0), 9.0)
+    trace = Trace(drawing.points_px, TraceEnd.ENDPOINT, 1.0)
+    arcs = arc_lengths(trace.points_px)
+    for site in find_sites((trace,), 4.0):
+        for arc in site.arcs:
+            there = point_at(trace.points_px, arcs, np.array([arc * arcs[-1]]))[0]
+            assert np.linalg.norm(there - site.position_px) < 0.5
