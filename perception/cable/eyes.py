@@ -9,6 +9,9 @@ from perception.cable.plug_ends import find_ends
 from perception.cable.types import Endpoint
 from perception.camera import GreyImage
 
+# Where it is less likely than this that a cable ends, none does.
+LEAST_END = 0.2
+
 
 class Eye(Protocol):
     """What the steps of perception see an image with; each has more than one implementation."""

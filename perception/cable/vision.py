@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from perception.cable.belief import any_knotted, knot_types, knotted_probability, reading_of
 from perception.cable.coverage import explained_share
 from perception.cable.crowding import doubt_shared
-from perception.cable.eyes import EndJudge
+from perception.cable.eyes import LEAST_END, EndJudge
 from perception.cable.grasp_points import GraspConfig
 from perception.cable.interfaces import HypothesisTracer
 from perception.cable.knots import find_knots
@@ -35,8 +35,6 @@ REACHED_PX = 20.0
 THROUGH_PX = 4.0
 # A trace of which more than this share lies on another one follows the same cable.
 SAME_CABLE = 0.5
-# Where the tracer believes less that a cable ends, none does.
-LEAST_END = 0.2
 # A second point this far into the cable tells a tracer which way to go from an end.
 AHEAD_PX = 4.0
 # Other ways to read a cable than the likeliest are weighed down to this belief, so many at most.

@@ -8,7 +8,7 @@ likeliest (conditional logit, with a prior that they are small) go into `posteri
 import argparse
 import json
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -16,12 +16,14 @@ from numpy.typing import NDArray
 from scipy.optimize import minimize
 
 from perception.cable.following import followed_share
+from perception.cable.observation import Observe
+from perception.cable.parts import EYES
 from perception.cable.tracers.evidence import FEATURES, NONE_FEATURES, doubts, evidence
 from perception.cable.tracers.hypotheses import hypotheses
-from perception.cable.tracers.posterior import FILE, Weights, shares, stacked
+from perception.cable.tracers.posterior import FILE, Weights, shares, stacked, view_at
 from perception.cable.tracers.search import SearchConfig
 from perception.cable.tracers.steps import StepModel
-from perception.cable.tracers.survey import View, survey, view_from
+from perception.cable.tracers.survey import survey
 from perception.cable.types import Endpoint, TraceEnd
 from perception.models.frames import Floats
 from perception.training.calibration import expected_calibration_error, selective_error
@@ -33,7 +35,7 @@ EXTENTS, LARGEST_PX = (40.0, 170.0), 1000.0
 WIDTHS_PX = (4.0, 14.0)
 # Nodes of a line are half a cable width apart.
 START_NODES, DIRECTION_NODES = 16, 8
-START_ERROR, WIDTH_ERROR = 0.1, 0.08
+START_ERROR = 0.1
 # A strand nearer than this to an end hides it [widths].
 HIDDEN = 1.5
 # What is known of ends: all of them, one of each cable, or only the start.
@@ -154,12 +156,12 @@ def is_right(task: TraceTask, points_px: Floats, end: TraceEnd) -> bool:
     return followed_share(truth, points_px, 1.3 * width_px, 5.0 * width_px) >= 1.0
 
 
-def examples(model: StepModel, seed: int, wanted: int) -> Iterator[Example]:
-    """Yield what searches found in scenes of a seed."""
+def examples(model: StepModel, observe: Observe, seed: int, wanted: int) -> Iterator[Example]:
+    """Yield what searches found in scenes of a seed, as they are observed."""
     for number in range(wanted):
         rng = np.random.default_rng([seed, number])
         task = draw_task(rng)
-        view = _view(rng, task)
+        view = view_at(observe, task.scene.image, task.start_px)
         if view is None:
             continue
         found = survey(
@@ -168,14 +170,6 @@ def examples(model: StepModel, seed: int, wanted: int) -> Iterator[Example]:
         candidates = hypotheses(found, 0)
         right = [is_right(task, found.image.back(one.points), one.end) for one in candidates]
         yield Example(evidence(found, 0, candidates), doubts(found, 0), np.array(right, dtype=bool))
-
-
-def _view(rng: np.random.Generator, task: TraceTask) -> View | None:
-    """Return what is known of a scene: a width with as much error as a network's, or as found."""
-    view = view_from(task.scene.image, task.start_px)
-    if view is None or rng.random() < 0.5:
-        return view
-    return replace(view, width_px=task.width_px * float(np.exp(rng.normal(0.0, WIDTH_ERROR))))
 
 
 def fit(seen: Sequence[Example]) -> Weights:
@@ -229,9 +223,10 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument("--held-out", type=int, default=200, help="to measure on, default 200")
     options = parser.parse_args(arguments)
     model = StepModel(options.folder)
-    weights = fit(list(examples(model, SEED, options.scenes)))
+    observe = EYES["learned"]().observe
+    weights = fit(list(examples(model, observe, SEED, options.scenes)))
     (options.folder / FILE).write_text(weights.model_dump_json(indent=2) + "\n")
-    held_out = figures(list(examples(model, HELD_OUT_SEED, options.held_out)), weights)
+    held_out = figures(list(examples(model, observe, HELD_OUT_SEED, options.held_out)), weights)
     path = options.folder / "metrics.json"
     metrics = json.loads(path.read_text())
     metrics["traces"] = {"fit_seed": SEED, "measure_seed": HELD_OUT_SEED, **held_out}

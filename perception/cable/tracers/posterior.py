@@ -17,7 +17,8 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict
 
 from executive.core.errors import InputError
-from perception.cable.observation import Observe
+from perception.cable.eyes import LEAST_END
+from perception.cable.observation import Observation, Observe
 from perception.cable.plug_ends import find_ends
 from perception.cable.polyline import pixels_of
 from perception.cable.tracers.evidence import FEATURES, NONE_FEATURES, doubts, evidence
@@ -28,6 +29,7 @@ from perception.cable.tracers.starts import from_start
 from perception.cable.tracers.steps import StepModel
 from perception.cable.tracers.stretches import stretches_px
 from perception.cable.tracers.survey import Survey, View, survey, view_from
+from perception.cable.tracers.walking import walked_ends
 from perception.cable.types import Endpoint, Points, Trace, TraceEnd
 from perception.camera import GreyImage
 from perception.models.frames import Floats, scale_image
@@ -131,7 +133,7 @@ class PosteriorTracer:
         seem, so that is tried as well.
         """
         start_px = np.atleast_2d(np.asarray(start_px, dtype=float))
-        view = self._view(image, start_px)
+        view = view_at(self._observe, image, start_px)
         if view is None:
             return NOTHING
         first = self._asked(image, start_px, endpoints, view)
@@ -141,12 +143,21 @@ class PosteriorTracer:
         return max([first, *again], key=_best_belief)
 
     def judged(self, image: GreyImage, endpoints: Sequence[Endpoint]) -> tuple[Endpoint, ...]:
-        """Return ends, the surest first, believed in as far as the cable is seen to stop there."""
-        view = self._view(image, endpoints[0].position_px[None]) if endpoints else None
+        """Return ends, the surest first, believed in as far as the cable is seen to stop there.
+
+        Where none is left, cables are followed to their ends from where they lie alone.
+        """
+        view = view_at(self._observe, image, endpoints[0].position_px[None] if endpoints else None)
         if view is None:
             return tuple(endpoints)
         scaled = scale_image(image, view.width_px, WIDTH, self._model.zoom)
-        return judged(self._model, scaled, endpoints)
+        told = judged(self._model, scaled, endpoints)
+        if view.stretches and not any(end.probability >= LEAST_END for end in told):
+            longest = max(view.stretches, key=len)
+            sketch = view.sketch(scaled)
+            found = walked_ends(self._model, self._config, scaled, longest, sketch)
+            told = (*judged(self._model, scaled, found), *told)
+        return tuple(sorted(told, key=lambda end: -end.probability))
 
     def _asked(
         self, image: GreyImage, start_px: Points, endpoints: Sequence[Endpoint], view: View
@@ -158,19 +169,6 @@ class PosteriorTracer:
         found = survey(self._model, self._config, image, view, [start_px], endpoints)
         return posterior_of(found, 0, self._weights)
 
-    def _view(self, image: GreyImage, start_px: Points) -> View | None:
-        """Return what is seen, by other means where the start is not on what was observed."""
-        observation = self._observe(image) if self._observe is not None else None
-        if observation is None or not _holds(observation.mask.cable, start_px):
-            return view_from(image, start_px)
-        mask, graph = observation.mask, observation.graph
-        return View(
-            mask.width_px,
-            mask.cable,
-            stretches=stretches_px(observation),
-            dead_ends=find_ends(mask, graph),
-        )
-
     def _survey_ends(
         self,
         pixels: bytes,
@@ -181,10 +179,35 @@ class PosteriorTracer:
         """Follow cables from all ends; endpoints are told apart by being the same objects."""
         image = np.frombuffer(pixels, dtype=np.uint8).reshape(shape)
         starts = [end.position_px[None] for end in endpoints]
-        view = self._view(image, starts[0])
+        view = view_at(self._observe, image, starts[0])
         if view is None:
             return None
         return survey(self._model, self._config, image, view.wider(scale), starts, endpoints)
+
+
+def view_at(observe: Observe | None, image: GreyImage, start_px: Points | None) -> View | None:
+    """Return what is seen of the cable at a start, by other means where that is not observed.
+
+    Args:
+        observe: Looks at the image, if anything does.
+        image: Grey image.
+        start_px: Points on the cable, shape (N, 2); None takes what is observed as it is.
+    """
+    observation = observe(image) if observe is not None else None
+    if observation is not None and (start_px is None or _holds(observation.mask.cable, start_px)):
+        return view_of(observation)
+    return view_from(image, start_px) if start_px is not None else None
+
+
+def view_of(observation: Observation) -> View:
+    """Return what the searches need of an observation."""
+    mask, graph = observation.mask, observation.graph
+    return View(
+        mask.width_px,
+        mask.cable,
+        stretches=stretches_px(observation),
+        dead_ends=find_ends(mask, graph),
+    )
 
 
 def _best_belief(posterior: TracePosterior) -> float:

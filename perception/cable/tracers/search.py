@@ -32,7 +32,7 @@ class SearchConfig:
         least: Ways less likely than this are not followed.
         lost: Without any way or end more likely than this, a path is lost.
         end_odds: How often a step meets an end of the cable, over how often it did in training.
-        dead_end_odds: The same where what is seen of the cable ends as well.
+        dead_end: Where what is seen of the cable ends, it ends at least this likely.
         window: Paths less likely than the best by this factor are dropped [nats].
         most_looks: After so many looks for each start what still goes on is lost.
         leaps: Whether a look may give more than one step.
@@ -44,7 +44,7 @@ class SearchConfig:
     least: float = 0.05
     lost: float = 0.08
     end_odds: float = 0.15
-    dead_end_odds: float = 1.0
+    dead_end: float = 0.06
     window: float = 4.5
     most_looks: int = 400
     leaps: bool = True
@@ -112,7 +112,9 @@ class Search:
         found = find_modes(outlook.cells, config.least, config.modes)
         modes = [mode for mode in found if mode.point_crop[0] > HERE[0] - BACK]
         is_dead = self._sketch is not None and self._sketch.dead_ends.reached(path) is not None
-        end = (config.dead_end_odds if is_dead else config.end_odds) * outlook.end
+        end = config.end_odds * outlook.end
+        if is_dead:
+            end = max(outlook.end, config.dead_end)
         believed = [end, *(mode.probability for mode in modes)]
         # What lies beside the modes is the blur of the map, unless that is most of it.
         total = max(sum(believed), 0.5)

@@ -50,6 +50,10 @@ class View:
     stretches: tuple[Points, ...] = ()
     dead_ends: tuple[Endpoint, ...] = ()
 
+    def sketch(self, scaled: ScaledImage) -> Sketch:
+        """Return what is known of the cables in a scaled image."""
+        return Sketch(Stretches(self.stretches, scaled), Ends.of(self.dead_ends, scaled))
+
     def wider(self, by: float) -> "View":
         """Return the same with cables so many times as wide."""
         return replace(self, width_px=by * self.width_px, scale=by * self.scale)
@@ -114,7 +118,7 @@ def survey(
     begun = [_as_end(start, own, scaled) for start, own in zip(starts_px, paths, strict=True)]
     ends = Ends.of([*begun, *far], scaled)
     paths += [first_paths(end.position_px[None], [end], scaled) for end in far]
-    sketch = Sketch(Stretches(view.stretches, scaled), Ends.of(view.dead_ends, scaled))
+    sketch = view.sketch(scaled)
     searches = [
         Search(own, ends.without(ends.points[number], OWN_END_WIDTHS * WIDTH), config, sketch)
         for number, own in enumerate(paths)
