@@ -106,15 +106,28 @@ class SearchedShelf(Protocol):
 class Searcher:
     """Knows names, sizes of known objects and what it sees; nothing else about the scene."""
 
-    def __init__(self, scene: Scene, way: Way, world: SearchedShelf | None = None) -> None:
-        """Begin before the first look, in a world without physics unless another is given."""
+    def __init__(
+        self,
+        scene: Scene,
+        way: Way,
+        world: SearchedShelf | None = None,
+        poses: HiddenPoses | None = None,
+    ) -> None:
+        """Begin before the first look.
+
+        Args:
+            scene: What is searched.
+            way: How to search.
+            world: What is looked into and acted on; None for one without physics.
+            poses: Of the scene's target, which searches may share.
+        """
         self.way, self.target, self.shelf = way, scene.target, scene.shelf
         self.world: SearchedShelf = world or ShelfWorld(
             scene, np.random.default_rng(0), reach=way.reach
         )
         self.sizes = {name: box.size_m for name, box in zip(scene.names, scene.boxes, strict=True)}
-        self.caster = BoxCaster(front_camera(scene.shelf))
-        self.poses = HiddenPoses(self.sizes[scene.target], self.shelf, self.caster)
+        self.poses = poses or poses_of(scene)
+        self.caster = self.poses.caster
         self.belief, self.minimum = PoseBelief(self.poses), RunningMinimum()
         self.original, self.contacts = OriginalScene(), Contacts()
         self.been: list[tuple[str, Box]] = []
@@ -204,9 +217,15 @@ class Searcher:
         return affinity.mixed(organisation_of(self.original.boxes, affinity))
 
 
-def search(scene: Scene, way: Way) -> Trial:
-    """Search with at most 2 N actions (thesis, section 5.2)."""
-    searcher, refusals = Searcher(scene, way), 0
+def poses_of(scene: Scene) -> HiddenPoses:
+    """Return the poses of a scene's target, as large as it is."""
+    size_m = scene.boxes[scene.names.index(scene.target)].size_m
+    return HiddenPoses(size_m, scene.shelf, BoxCaster(front_camera(scene.shelf)))
+
+
+def search(scene: Scene, way: Way, poses: HiddenPoses | None = None) -> Trial:
+    """Search with at most 2 N actions (thesis, section 5.2), in a world without physics."""
+    searcher, refusals = Searcher(scene, way, poses=poses), 0
     beliefs, choices = list[float](), list[float]()
     limit = 2 * len(scene.names)
     for actions in range(limit + 1):
@@ -214,15 +233,16 @@ def search(scene: Scene, way: Way) -> Trial:
             return Trial(True, actions, False, refusals, tuple(beliefs), tuple(choices))
         if actions == limit:
             break
-        view, seen = _timed(beliefs, searcher.look)
-        move = _timed(choices, partial(searcher.choose, view, seen))
+        view, seen = timed(beliefs, searcher.look)
+        move = timed(choices, partial(searcher.choose, view, seen))
         if move is None:
             return Trial(False, actions, True, refusals, tuple(beliefs), tuple(choices))
         refusals += searcher.act(move, seen).failure is not None
     return Trial(False, limit, False, refusals, tuple(beliefs), tuple(choices))
 
 
-def _timed(times: list[float], call: Callable[[], T]) -> T:
+def timed(times: list[float], call: Callable[[], T]) -> T:
+    """Call something, and note how long it took [s]."""
     begun = time.perf_counter()
     answer = call()
     times.append(time.perf_counter() - begun)

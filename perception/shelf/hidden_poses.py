@@ -13,7 +13,7 @@ import numpy as np
 
 from perception.shelf.casting import BoxCaster, Silhouettes
 from perception.shelf.planning.room import overlapping
-from perception.shelf.types import Bools, Floats, Shelf, ShelfView, Sighting, Size
+from perception.shelf.types import Bools, Box, Floats, Shelf, ShelfView, Sighting, Size
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,7 +48,7 @@ class HiddenPoses:
             rules: How poses are ruled out; None for the defaults.
         """
         self.rules = rules or PoseRules()
-        self._caster, self._shape = caster, caster.rays.shape[:2]
+        self.caster, self._shape = caster, caster.rays.shape[:2]
         self.x_m = _centres(shelf.width_m, target_m[0], self.rules.cell_m[0])
         self.y_m = _centres(shelf.depth_m, target_m[1], self.rules.cell_m[1])
         x_m, y_m = np.meshgrid(self.x_m, self.y_m, indexing="ij")
@@ -70,6 +70,11 @@ class HiddenPoses:
     def feasible(self, view: ShelfView, seen: Sequence[Sighting]) -> Bools:
         """Say in which cells the target may be, as far as one view tells, shape (count,)."""
         return self._unseen(view) & ~self._taken(seen)
+
+    def overlaps(self, box: Box) -> Bools:
+        """Say in which cells no target can stand where a box stands, shape (count,)."""
+        shrink = self.rules.touch_m * np.array([1.0, 1.0, -1.0, -1.0])
+        return overlapping(np.array([*box.low_m[:2], *box.high_m[:2]]) + shrink, self._cores)
 
     def heat(self, weights: Floats) -> Floats:
         """Return for each pixel how much weight would show there if nothing hid it.
@@ -100,10 +105,8 @@ class HiddenPoses:
 
     def _taken(self, seen: Sequence[Sighting]) -> Bools:
         taken = np.zeros(self.count, dtype=bool)
-        shrink = self.rules.touch_m * np.array([1.0, 1.0, -1.0, -1.0])
         for sighting in seen:
-            low, high = sighting.sure.low_m, sighting.sure.high_m
-            taken |= overlapping(np.array([*low[:2], *high[:2]]) + shrink, self._cores)
+            taken |= self.overlaps(sighting.sure)
         return taken
 
 

@@ -25,7 +25,7 @@ from perception.shelf.planning.looking_ahead import (
     look_ahead,
 )
 from perception.shelf.planning.moves import Move, Plan
-from perception.shelf.planning.room import Reach, footprints
+from perception.shelf.planning.room import Reach, footprints, overlapping
 from perception.shelf.planning.tidying import tidying_move
 from perception.shelf.planning.ways_out import freeing_move
 from perception.shelf.refining import refined
@@ -39,6 +39,9 @@ KEPT = 8
 # How likely a look is to be mistaken that rules a place out. What is ruled out comes up again when
 # nothing else is left: places of what is seen are known to some millimetres alone.
 MISTAKEN = 1e-3
+# What a push has met unseen is the target, or something else: places that do not touch it are less
+# likely by this factor.
+NOT_MET, TOUCHING_M = 0.3, 0.005
 # For so many moves it is remembered that something was met.
 REMEMBERED = 4
 # How well the place is known of a target that was seen from another side, and only partly.
@@ -67,6 +70,16 @@ class SearchReasoner:
         self._stock, self._affinity, self._reach, self._camera = stock, affinity, reach, camera
         self._casters: OrderedDict[bytes, BoxCaster] = OrderedDict()
         self._poses: OrderedDict[tuple[bytes, str], HiddenPoses] = OrderedDict()
+
+    def share(self, target: str, poses: HiddenPoses) -> None:
+        """Take poses of a target that were laid out before, for the camera that they were cast by.
+
+        Args:
+            target: Name of the target.
+            poses: Its poses.
+        """
+        key = _key(poses.caster.camera)
+        self._casters[key], self._poses[key, target] = poses.caster, poses
 
     def begin(self, target: str) -> ShelfBelief:
         """See `ShelfReasoning`."""
@@ -135,8 +148,16 @@ class SearchReasoner:
         objects = tuple(
             replace(one, box=box, sure=box) if one.label == label else one for one in belief.objects
         )
-        been = belief.been if before is None else (*belief.been, (label, before.box))
-        return _meeting(_forgetting(replace(belief, objects=objects, been=been)), met)
+        if before is None:
+            return _meeting(replace(belief, objects=objects), met)
+        plausible = belief.plausible * self._felt(belief, before.box, box, met)
+        moved = replace(
+            belief,
+            objects=objects,
+            been=(*belief.been, (label, before.box)),
+            plausible=np.maximum(plausible / plausible.max(), MISTAKEN**2),
+        )
+        return _meeting(_forgetting(moved), met)
 
     def refused(self, belief: ShelfBelief, move: Move, failure: str) -> ShelfBelief:
         """See `ShelfReasoning`."""
@@ -150,6 +171,24 @@ class SearchReasoner:
     def removed(self, belief: ShelfBelief, label: str) -> ShelfBelief:
         """See `ShelfReasoning`."""
         return replace(belief, objects=tuple(one for one in belief.objects if one.label != label))
+
+    def _felt(self, belief: ShelfBelief, start: Box, end: Box, met: Floats) -> Floats:
+        """Return how likely each place is by how a move went, shape (K,).
+
+        Where an object was pushed along, the target is not; what it met unseen may be the target.
+        """
+        likely = np.ones(len(belief.places_m))
+        if start.y_m == end.y_m:
+            middle_m, wide_m = 0.5 * (start.x_m + end.x_m), abs(end.x_m - start.x_m)
+            width_m, depth_m, height_m = start.size_m
+            swept = Box(middle_m, start.y_m, (width_m + wide_m, depth_m, height_m))
+            taken = self._hidden(self._camera, belief.target).overlaps(swept)
+            likely = np.where(taken, MISTAKEN, likely)
+        half_m = 0.5 * np.array(belief.target_m[:2]) + TOUCHING_M
+        here = np.hstack([belief.places_m - half_m, belief.places_m + half_m])
+        for row in met:
+            likely = likely * np.where(overlapping(row, here), 1.0, NOT_MET)
+        return likely
 
     def _situation(self, belief: ShelfBelief, staying: str = "") -> Situation:
         fixed = {belief.target, staying}
