@@ -20,6 +20,7 @@ class ChoosePolicy(Skill):
     OUT = {
         "claim_by": Port(ClaimBy, "what a claim is made on"),
         "hold_at": Port(HoldAt, "where knots are held"),
+        "plans": Port(bool, "whether pulls go to where the cable should lie best"),
         "reveals": Port(bool, "whether cable that leaves the view is pulled in"),
         "disambiguates": Port(bool, "whether cable is moved only to understand it"),
     }
@@ -43,6 +44,7 @@ class ChoosePolicy(Skill):
         return success(
             claim_by=chosen.claim_by,
             hold_at=chosen.hold_at,
+            plans=chosen.plans,
             reveals=chosen.reveals,
             disambiguates=chosen.disambiguates,
         )

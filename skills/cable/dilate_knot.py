@@ -1,6 +1,6 @@
 """Loosen or undo a knot: one hand cages the cable, the other pinches it, both pull apart."""
 
-from collections.abc import Generator, Iterable, Mapping, Sequence
+from collections.abc import Generator, Iterable, Iterator, Mapping, Sequence
 from typing import Annotated
 
 import numpy as np
@@ -8,22 +8,26 @@ import numpy as np
 from executive.core.outcome import failure, success
 from executive.core.skill import In, SkillRun
 from perception.cable.grasp_sites import GraspSite
+from perception.cable.polyline import arc_lengths
 from perception.cable.types import Crossing, Knot, Trace
 from perception.camera import CameraFrame
 from robots.interfaces import Arm, Floats, MotionFailure, TcpGoal
 from skills.cable.grasping import CLEARANCE_M, grasp_goal
 from skills.cable.knot_sites import REACH_X_M, REACH_Y_M, Pair, given_pairs, searched_pairs
+from skills.cable.laying_out import Ends, Pull, best_places
 from skills.cable.policies import HoldAt
 from skills.motion.arm_skill import MOTION_REASONS, ArmSkill, MotionSteps
 from skills.motion.goals import above
 
-# Hands for a pair of goals, or why that pair cannot be reached.
-_Hands = tuple[Arm, Arm] | MotionFailure
+# The hand that cages and the one that pinches.
+_Hands = tuple[Arm, Arm]
 
 LIFT_M = 0.03
 MOST_PAIRS = 60
 # Where the whole way apart is out of reach, these parts of it are tried in turn.
 SHARES_OF_TRAVEL = (1.0, 0.8, 0.6, 0.4, 0.2)
+# How many of the best places are tried before that.
+MOST_ENDS = 8
 
 
 class DilateKnot(ArmSkill):
@@ -48,6 +52,7 @@ class DilateKnot(ArmSkill):
         knots: Annotated[tuple[Knot, ...], In("knots of the trace")],
         travel_m: Annotated[float, In("how much farther apart the hands move", "m")] = 0.5,
         hold_at: Annotated[HoldAt, In("best places in reach, or the knot's")] = "searched",
+        planned: Annotated[bool, In("go to where the cable should lie best instead")] = False,
     ) -> SkillRun:
         """Take hold with both hands, lift, pull apart, lay down, rise."""
         if not knots:
@@ -56,12 +61,21 @@ class DilateKnot(ArmSkill):
             pairs = searched_pairs(trace, crossings, knots[0], frame)
         else:
             pairs = given_pairs(trace, knots[0], frame)
-        hands = yield from self._reach_down(frame, pairs[:MOST_PAIRS])
-        if isinstance(hands, MotionFailure):
-            return failure(hands.code, hands.text, stage=hands.stage)
-        yield from self._set_grips({hands[0]: "cage", hands[1]: "pinch"})
+        found = yield from self._reach_down(frame, pairs[:MOST_PAIRS])
+        if isinstance(found, MotionFailure):
+            return failure(found.code, found.text, stage=found.stage)
+        hands, pair = found
+        pull = held_pull(frame, trace, *pair)
+        ends_m: Sequence[Ends] = ()
+        if planned:
+            left_first = hands[0] == "left"
+            ends_m = yield from self._worker.run(best_places, pull, left_first, MOST_ENDS)
+        slides = not ends_m or pull.slides(ends_m[0])
+        yield from self._set_grips({hands[0]: "cage" if slides else "pinch", hands[1]: "pinch"})
         missed = [arm for arm in hands if not self._arms.holds(arm)]
-        failed = None if missed else (yield from self._pull_apart(hands, travel_m))
+        failed: MotionFailure | None = None
+        if not missed:
+            failed = yield from self._pull_apart(hands, travel_m if slides else 0.0, ends_m)
         risen = yield from self._release(hands, CLEARANCE_M)
         if missed:
             return failure("grasp.missed", f"closed on nothing: {', '.join(missed)}")
@@ -72,11 +86,12 @@ class DilateKnot(ArmSkill):
 
     def _reach_down(
         self, frame: CameraFrame, ranked: Sequence[Pair]
-    ) -> Generator[None, None, _Hands]:
+    ) -> Generator[None, None, tuple[_Hands, Pair] | MotionFailure]:
         """Put both hands around the cable at the best pair of sites that they can reach.
 
         Returns:
-            The cage hand and the pinch hand, or why the last pair that was tried failed.
+            The cage hand and the pinch hand with the pair, or why the last one that was tried
+            failed.
         """
         pairs = iter(ranked)
         nowhere = "no two sites around the knot are apart and in reach"
@@ -85,10 +100,10 @@ class DilateKnot(ArmSkill):
             found = yield from self._worker.run(self._next_in_reach, frame, pairs, failed)
             if isinstance(found, MotionFailure):
                 return found
-            hands, goals = found
+            hands, goals, pair = found
             blocked = yield from self._descend(dict(zip(hands, goals, strict=True)), CLEARANCE_M)
             if blocked is None:
-                return hands
+                return hands, pair
             failed = blocked
 
     def _next_in_reach(
@@ -96,31 +111,64 @@ class DilateKnot(ArmSkill):
         frame: CameraFrame,
         pairs: Iterable[Pair],
         failed: MotionFailure,
-    ) -> tuple[tuple[Arm, Arm], tuple[TcpGoal, TcpGoal]] | MotionFailure:
+    ) -> tuple[_Hands, tuple[TcpGoal, TcpGoal], Pair] | MotionFailure:
         """Return hands and goals of the next pair that both can be above; else the last failure."""
         for cage, pinch in pairs:
             goals = (_goal(frame, cage), _goal(frame, pinch))
             hands = self._arms.assign((above(goals[0], CLEARANCE_M), above(goals[1], CLEARANCE_M)))
             if not isinstance(hands, MotionFailure):
-                return hands, goals
+                return hands, goals, (cage, pinch)
             failed = hands
         return failed
 
-    def _pull_apart(self, hands: tuple[Arm, Arm], travel_m: float) -> MotionSteps:
-        """Lift, move apart as far as asked or as far as the arms reach, lay down."""
+    def _pull_apart(
+        self, hands: _Hands, travel_m: float, ends_m: Sequence[Ends] = ()
+    ) -> MotionSteps:
+        """Lift, move apart, lay down: to the first places that the arms reach, else straight apart.
+
+        Args:
+            hands: The hand that cages and the one that pinches.
+            travel_m: How much farther apart they move where no place is reached; 0 for not at all.
+            ends_m: Places for both on the table, the best first.
+        """
         up_m = np.array([0.0, 0.0, LIFT_M])
         failed = yield from self._move_by(dict.fromkeys(hands, up_m))
         if failed is not None:
             return failed
         tips_m = {arm: self._arms.tcp_position(arm) for arm in hands}
-        present_m = float(np.linalg.norm(tips_m["left"] - tips_m["right"]))
-        for share in SHARES_OF_TRAVEL:
-            span_m = min(present_m + share * travel_m, 2.0 * REACH_X_M)
-            failed = yield from self._move_by(apart(tips_m, span_m))
+        for way_m in (*_ways(tips_m, hands, ends_m), *_ways_apart(tips_m, travel_m)):
+            failed = yield from self._move_by(way_m)
             if failed is None:
                 break
         laid = yield from self._move_by(dict.fromkeys(hands, -up_m))
         return failed or laid
+
+
+def held_pull(frame: CameraFrame, trace: Trace, cage: GraspSite, pinch: GraspSite) -> Pull:
+    """Return a trace on the table with both hands on it."""
+    line_m = frame.camera.on_plane(trace.points_px)[:, :2]
+    length_m = float(arc_lengths(line_m)[-1])
+    return Pull(line_m, cage.arc * length_m, pinch.arc * length_m)
+
+
+def _ways(
+    tips_m: Mapping[Arm, Floats], hands: _Hands, ends_m: Sequence[Ends]
+) -> Iterator[dict[Arm, Floats]]:
+    """Yield displacements of hands to places on the table, at the height where they are."""
+    for ends in ends_m:
+        yield {
+            arm: np.append(end_m - tips_m[arm][:2], 0.0)
+            for arm, end_m in zip(hands, ends, strict=True)
+        }
+
+
+def _ways_apart(tips_m: Mapping[Arm, Floats], travel_m: float) -> Iterator[dict[Arm, Floats]]:
+    """Yield displacements that move the hands apart, ever less far; none for no travel."""
+    if travel_m == 0.0:
+        return
+    present_m = float(np.linalg.norm(tips_m["left"] - tips_m["right"]))
+    for share in SHARES_OF_TRAVEL:
+        yield apart(tips_m, min(present_m + share * travel_m, 2.0 * REACH_X_M))
 
 
 def apart(tips_m: Mapping[Arm, Floats], span_m: float) -> dict[Arm, Floats]:

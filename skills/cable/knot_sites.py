@@ -32,9 +32,33 @@ WALK_ARC = 0.15
 def searched_pairs(
     trace: Trace, crossings: Sequence[Crossing], knot: Knot, frame: CameraFrame
 ) -> list[Pair]:
-    """Return the pairs of all places around a knot, best first."""
+    """Return the pairs of all places around a knot, best first; deeper in it comes last."""
     cages, pinches = cage_sites(trace, crossings, knot), pinch_sites(trace, crossings, knot)
-    return ranked_pairs(cages, pinches, knot, frame)
+    return [
+        *ranked_pairs(cages, pinches, knot, frame),
+        *deeper_pairs(trace, crossings, knot, frame),
+    ]
+
+
+def deeper_pairs(
+    trace: Trace, crossings: Sequence[Crossing], knot: Knot, frame: CameraFrame
+) -> list[Pair]:
+    """Return pairs anywhere in a knot, the cage first along the trace, best first.
+
+    Drawing the tail through more crossings rubs more, and so does a loop that is held farther
+    from where it closes; but a small knot has no other room for two hands.
+    """
+    visits = np.array([arc for c in crossings for arc in (c.arc_over, c.arc_under)])
+    sites = sites_between(trace, *knot.interval)
+
+    def cost(pair: Pair) -> float:
+        outside = (visits < pair[0].arc) | (visits > pair[1].arc)
+        inside = (visits > knot.interval[0]) & (visits < knot.interval[1])
+        crowding = sum(max(0.0, 1.0 - site.room_px / SIDE_ROOM_PX) for site in pair)
+        between_m = (pair[1].arc - pair[0].arc) * CABLE_LENGTH_M
+        return float((outside & inside).sum()) + between_m + 0.4 * crowding
+
+    return [pair for pair in _roomy(sites, sites, frame, cost) if pair[0].arc < pair[1].arc]
 
 
 def ranked_pairs(
@@ -51,7 +75,7 @@ def ranked_pairs(
         beyond_m = max(0.0, pair[1].arc - knot.interval[1]) * CABLE_LENGTH_M
         between_m = abs(pair[1].arc - pair[0].arc) * CABLE_LENGTH_M
         crowding = sum(max(0.0, 1.0 - site.room_px / SIDE_ROOM_PX) for site in pair)
-        return 5.0 * beyond_m + 0.3 * between_m + 0.4 * crowding
+        return 5.0 * beyond_m + between_m + 0.4 * crowding
 
     return _roomy(cages, pinches, frame, cost_m)
 

@@ -1,0 +1,150 @@
+"""Where two hands pull a knot apart to, so that the cable does not end up in a heap.
+
+What a pull leaves is predicted from the trace: what hangs on either hand has followed it, and
+where the hands are farther apart than there was cable between them, that is straight, and the
+tail as much shorter. Where this crosses itself seldom, and little tail is left to draw, is best.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+
+from perception.cable.polyline import arc_lengths, point_at
+from perception.cable.topology.curve import self_intersections
+from robots.interfaces import Floats
+from skills.cable.knot_sites import REACH_X_M, REACH_Y_M
+
+# Where a caging and a pinching hand go, on the table, shape (2,) each.
+Ends = tuple[Floats, Floats]
+
+# The line is looked at in steps of this length.
+STEP_M = 0.025
+# A hand's way is followed in so many parts.
+PARTS = 4
+# What hands can choose from: how far apart, which way, and where their middle is.
+SPANS_M = (0.76, 0.66, 0.56, 0.46, 0.36, 0.26)
+ANGLES_RAD = tuple(np.deg2rad((-60.0, -40.0, -20.0, 0.0, 20.0, 40.0, 60.0)))
+MIDDLES_X_M = (-0.2, -0.1, 0.0, 0.1, 0.2)
+MIDDLES_Y_M = (-0.14, -0.06, 0.02, 0.10, 0.16)
+# Arms that are to pass each other collide: hands keep so far apart along the table.
+ABREAST_M = 0.10
+# In crossings: a metre of tail that is left to draw, and a step of cable close beside another.
+TAIL_COST, BESIDE_COST = 20.0, 0.15
+BESIDE_M = 0.02
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Pull:
+    """Two hands at a cable: one where its tail enters a loop, one at the strand that closes it.
+
+    The first hand lets the cable slide (a cage) where the hands go farther apart than there is
+    cable between them; else it takes the cable along (a pinch), and with it the tail.
+
+    Attributes:
+        line_m: The cable on the table, evenly spaced, shape (N, 2).
+        cage_m: Length from its start to the first hand: the tail that is to be drawn out.
+        pinch_m: The same of the other hand, farther along.
+    """
+
+    line_m: Floats
+    cage_m: float
+    pinch_m: float
+
+    def slides(self, ends: Ends) -> bool:
+        """Return whether the first hand is a cage for places of both hands."""
+        return float(np.linalg.norm(ends[1] - ends[0])) > self.pinch_m - self.cage_m
+
+    def drawn_m(self, ends: Ends) -> float:
+        """Return how much of the tail is drawn out, at most all of it."""
+        span_m = float(np.linalg.norm(ends[1] - ends[0]))
+        taken_m = self.pinch_m - self.cage_m
+        if not self.slides(ends):
+            hands_m = point_at(
+                self.line_m, arc_lengths(self.line_m), np.array([self.cage_m, self.pinch_m])
+            )
+            taken_m = float(np.linalg.norm(hands_m[1] - hands_m[0]))
+        return min(max(0.0, span_m - taken_m), self.cage_m)
+
+    def predicted(self, ends: Ends) -> Floats:
+        """Return the line that is left when both hands have gone to these places."""
+        arcs = arc_lengths(self.line_m)
+        slid_m = self.drawn_m(ends) if self.slides(ends) else 0.0
+        tail = _piece(self.line_m, arcs, slid_m, self.cage_m)
+        rest = _piece(self.line_m, arcs, self.pinch_m, float(arcs[-1]))
+        if self.slides(ends):
+            steps = max(int(float(np.linalg.norm(ends[1] - ends[0])) / STEP_M), 1)
+            middle: Floats = np.linspace(*ends, steps + 1)
+        else:
+            between = _piece(self.line_m, arcs, self.cage_m, self.pinch_m)
+            middle = followed(followed(between, ends[0])[::-1], ends[1])[::-1]
+        left, right = followed(tail[::-1], ends[0])[::-1], followed(rest, ends[1])
+        return np.vstack([left[:-1], middle, right[1:]])
+
+    def cost(self, ends: Ends) -> float:
+        """Return how bad it is to leave the cable as it is predicted, in crossings."""
+        left_m = self.cage_m - self.drawn_m(ends)
+        return tangle_cost(self.predicted(ends)) + TAIL_COST * left_m
+
+
+def tangle_cost(line_m: Floats) -> float:
+    """Return how hard a line is to understand: its crossings, and what lies close beside itself."""
+    crossings = len(self_intersections(line_m)[0])
+    gaps_m = np.linalg.norm(line_m[:, None] - line_m[None], axis=2)
+    apart = np.abs(np.subtract.outer(np.arange(len(line_m)), np.arange(len(line_m)))) > 4
+    return crossings + BESIDE_COST * float(((gaps_m < BESIDE_M) & apart).sum()) / 2.0
+
+
+def followed(line_m: Floats, to_m: Floats) -> Floats:
+    """Return where a line lies when its first point has been drawn to a place.
+
+    Every point follows the one before it as soon as that is too far away (a tractrix), as a
+    cable does that friction holds everywhere.
+    """
+    line = [np.array(point) for point in line_m]
+    lengths = np.linalg.norm(np.diff(line_m, axis=0), axis=1)
+    for share in np.arange(1, PARTS + 1) / PARTS:
+        line[0] = (1.0 - share) * line_m[0] + share * to_m
+        for k, length in enumerate(lengths.tolist(), start=1):
+            back = line[k] - line[k - 1]
+            gap = float(np.hypot(back[0], back[1]))
+            if gap <= length:
+                break
+            line[k] = line[k - 1] + back * (length / gap)
+    return np.array(line)
+
+
+def _piece(line_m: Floats, arcs: Floats, begin_m: float, end_m: float) -> Floats:
+    steps = max(round((end_m - begin_m) / STEP_M), 1)
+    piece: Floats = point_at(line_m, arcs, np.linspace(begin_m, end_m, steps + 1))
+    return piece
+
+
+def places(left_holds_cage: bool) -> Iterator[Ends]:
+    """Yield places for cage and pinch hand within reach, arms not crossed."""
+    for span_m, angle, x_m, y_m in product(SPANS_M, ANGLES_RAD, MIDDLES_X_M, MIDDLES_Y_M):
+        half = 0.5 * span_m * np.array([np.cos(angle), np.sin(angle)])
+        left, right = np.array([x_m, y_m]) - half, np.array([x_m, y_m]) + half
+        if right[0] - left[0] >= ABREAST_M and _in_reach(left) and _in_reach(right):
+            yield (left, right) if left_holds_cage else (right, left)
+
+
+def _in_reach(point_m: Floats) -> bool:
+    return bool(abs(point_m[0]) <= REACH_X_M + 1e-9 and REACH_Y_M[0] <= point_m[1] <= REACH_Y_M[1])
+
+
+def best_places(pull: Pull, left_holds_cage: bool, count: int) -> Sequence[Ends]:
+    """Return places for both hands, the best first; the first hand slides for all or for none.
+
+    Args:
+        pull: What is held.
+        left_holds_cage: Whether the left hand does.
+        count: How many to return; none where the pinch is not farther along than the cage.
+    """
+    if pull.pinch_m <= pull.cage_m:
+        return []
+    ends = list(places(left_holds_cage))
+    order = np.argsort([pull.cost(pair) for pair in ends], kind="stable")
+    best = [ends[k] for k in order]
+    return [pair for pair in best if pull.slides(pair) == pull.slides(best[0])][:count]

@@ -1,0 +1,98 @@
+"""Predicted pulls: cable is neither lost nor stretched, hands stay in reach, heaps are avoided."""
+
+import numpy as np
+import pytest
+from cell_fakes import ArrivingArms, finished, frame, overhand
+
+from executive.core.work import InlineWorker
+from perception.cable.polyline import arc_lengths
+from skills.cable.dilate_knot import DilateKnot
+from skills.cable.knot_sites import REACH_X_M, REACH_Y_M, deeper_pairs
+from skills.cable.laying_out import Pull, best_places, followed, places, tangle_cost
+
+LINE = np.column_stack([np.linspace(-0.4, 0.4, 81), 0.1 * np.sin(np.linspace(0.0, 9.0, 81))])
+LENGTH_M = float(arc_lengths(LINE)[-1])
+
+
+@pytest.mark.parametrize("to_m", [(0.0, 0.3), (-0.7, 0.0), (-0.38, 0.01)])
+def test_what_follows_keeps_its_length_and_is_never_longer_apart(to_m):
+    line = followed(LINE, np.array(to_m))
+    before, after = (np.linalg.norm(np.diff(each, axis=0), axis=1) for each in (LINE, line))
+    assert np.allclose(line[0], to_m)
+    assert (after <= before + 1e-9).all()
+
+
+def test_a_line_that_is_not_drawn_tight_stays_where_it_is_farther_on():
+    line = followed(LINE, LINE[0] + (0.02, 0.02))
+    assert np.allclose(line[10:], LINE[10:])
+
+
+def test_hands_that_go_farther_apart_than_there_is_cable_draw_it_out_of_the_tail():
+    pull = Pull(LINE, 0.4, 0.6)
+    ends = np.array([-0.25, 0.1]), np.array([0.25, 0.1])
+    assert pull.slides(ends)
+    assert pull.drawn_m(ends) == pytest.approx(0.5 - 0.2)
+    line = pull.predicted(ends)
+    assert float(arc_lengths(line)[-1]) == pytest.approx(LENGTH_M, rel=0.05)
+
+
+def test_where_a_long_loop_lies_between_the_hands_the_tail_is_taken_along():
+    turn = np.linspace(0.2, 2.0 * np.pi - 0.2, 60)
+    loop = 0.15 * np.column_stack([-np.cos(turn), np.sin(turn)])
+    line = np.vstack([loop[0] + np.arange(40, 0, -1)[:, None] * (-0.01, 0.0), loop])
+    pull = Pull(line, 0.4, float(arc_lengths(line)[-1]) - 0.05)
+    ends = np.array([-0.3, -0.1]), np.array([0.2, -0.1])
+    assert not pull.slides(ends)
+    assert 0.25 < pull.drawn_m(ends) <= 0.4
+    assert pull.drawn_m((line[40], line[-1])) < 0.02
+
+
+def test_a_line_that_crosses_itself_is_worse_and_so_is_one_that_lies_beside_itself():
+    turn = np.linspace(0.0, 2.0 * np.pi, 40)
+    circle = 0.15 * np.column_stack([np.cos(turn), np.sin(turn)])
+    crossed = np.vstack([circle, circle[0] + np.arange(1, 12)[:, None] * (-0.03, 0.001)])
+    beside = np.vstack([LINE, LINE[::-1] + np.array([0.0, 0.01])])
+    assert tangle_cost(LINE) == 0.0
+    assert tangle_cost(crossed) >= 1.0
+    assert tangle_cost(beside) > 1.0
+
+
+@pytest.mark.parametrize("left_holds_cage", [False, True])
+def test_places_are_in_reach_and_the_arms_do_not_cross(left_holds_cage):
+    for cage_m, pinch_m in places(left_holds_cage):
+        left, right = (cage_m, pinch_m) if left_holds_cage else (pinch_m, cage_m)
+        assert left[0] < right[0]
+        for place in (left, right):
+            assert abs(place[0]) <= REACH_X_M + 1e-9
+            assert REACH_Y_M[0] <= place[1] <= REACH_Y_M[1]
+
+
+def test_the_best_places_are_better_than_any_others():
+    pull = Pull(LINE, 0.4, 0.6)
+    best = best_places(pull, True, 3)
+    costs = [pull.cost(ends) for ends in best]
+    assert costs == sorted(costs)
+    assert costs[0] == min(pull.cost(ends) for ends in places(True))
+    assert best_places(Pull(LINE, 0.6, 0.4), True, 3) == []
+
+
+def test_a_planned_dilation_ends_where_the_cable_should_lie_best():
+    arms = ArrivingArms()
+    trace, crossings, knot = overhand()
+    inputs = {"frame": frame(), "trace": trace, "crossings": crossings, "knots": (knot,)}
+    outcome, _ = finished(DilateKnot(arms, InlineWorker()), inputs | {"planned": True})
+    moves = [entry[1] for entry in arms.log if entry[0] == "move"]
+    ends = [np.array(moves[3][arm][:2]) for arm in ("left", "right")]
+    assert outcome.status == "SUCCESS"
+    assert any(
+        np.allclose(ends, pair, atol=2e-3) or np.allclose(ends[::-1], pair, atol=2e-3)
+        for pair in places(True)
+    )
+
+
+def test_deeper_pairs_keep_the_cage_before_the_pinch_within_the_knot():
+    trace, crossings, knot = overhand()
+    pairs = deeper_pairs(trace, crossings, knot, frame())
+    low, high = knot.interval
+    assert pairs
+    assert all(low < cage.arc < pinch.arc < high for cage, pinch in pairs)
