@@ -5,6 +5,7 @@ from pathlib import Path
 
 import torch
 from pydantic import BaseModel, ConfigDict
+from safetensors import SafetensorError
 from safetensors.torch import load_file
 from torch import nn
 from torch.nn.utils.fusion import fuse_conv_bn_eval
@@ -53,7 +54,7 @@ def load_network(folder: Path) -> nn.Module:
     """Return a trained network, ready to run, its normalisations folded into convolutions.
 
     Raises:
-        InputError: The config names a network that does not exist.
+        InputError: The config names a network that does not exist, or its weights are damaged.
     """
     config = read_config(folder)
     if config.network not in NETWORKS:
@@ -63,7 +64,15 @@ def load_network(folder: Path) -> nn.Module:
             f"expected one of the networks (known: {known})"
         )
     network = NETWORKS[config.network](config.widths, config.zoom)
-    network.load_state_dict(load_file(folder / "weights.safetensors"))
+    weights = folder / "weights.safetensors"
+    try:
+        network.load_state_dict(load_file(weights))
+    except (OSError, RuntimeError, SafetensorError) as error:
+        why = str(error).partition("\n")[0]
+        raise InputError(
+            f"{weights}: are no weights of the network {config.network!r}; got {why}; "
+            "try git checkout of the file, or training it anew"
+        ) from None
     network.eval()
     _fold(network)
     return network.to(memory_format=torch.channels_last)

@@ -1,0 +1,163 @@
+"""A service under load: errors, lost commands, what it costs the ticks, and how it stops.
+
+A mission that only waits runs in the simulated table cell, whose physics keeps a core busy
+with the same work in every tick. Its tick rate while 50 clients flood the service is held
+against that right before. Stops are of untangling missions whose arms move: from the request
+until the mission has ended, and, on the cell's clock, from the last tick until every joint rests.
+The bound is that of the joints' limits: acceleration ended, full speed braked, rest.
+"""
+
+import json
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+from urllib.request import Request, urlopen
+
+import numpy as np
+
+from benchmarks.harness import Row, median, percentile_95, share
+from executive.engine.recording.reader import Recording
+from robots.limits import TIME_TO_FULL_ACCELERATION_S, TIME_TO_FULL_SPEED_S
+
+CLIENTS = 50
+REST_RAD_S = 1e-3
+BOUND_S = TIME_TO_FULL_SPEED_S + 2.0 * TIME_TO_FULL_ACCELERATION_S
+IDLE = """
+format: 1
+mission: idle
+cell: yumi_table
+root: {wait: 1000000.0}
+"""
+_PATIENCE_S = 300.0
+
+
+def run(quick: bool, seed: int) -> Sequence[Row]:
+    """Flood a service with 10,000 requests, and stop it 10 times."""
+    floods, each, stops = (2, 20, 1) if quick else (10, 20, 10)
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        (folder / "idle.yaml").write_text(IDLE, encoding="utf-8")
+        with _served(folder) as cell:
+            rows = _floods(cell, floods, each)
+            return rows + _stops(cell, stops, seed)
+
+
+class _Cell:
+    """A service, as its client sees it."""
+
+    def __init__(self, port: int, folder: Path) -> None:
+        self.port, self.folder = port, folder
+
+    def ask(self, verb: str, path: str, body: object = None) -> Any:
+        data = None if body is None else json.dumps(body).encode()
+        headers = {"content-type": "application/json"} if data else {}
+        url = f"http://127.0.0.1:{self.port}{path}"
+        with urlopen(Request(url, data, headers, method=verb), timeout=60) as answer:
+            return json.load(answer)
+
+    def wait_for(self, state: str, ticks: int = 0) -> None:
+        """Wait until the cell is in a state, and its mission has ticked so often."""
+        deadline = time.monotonic() + _PATIENCE_S
+        while True:
+            found = self.ask("GET", "/cell")
+            if found["state"] == state and found["ticks"] >= ticks:
+                return
+            if time.monotonic() > deadline:
+                raise RuntimeError(f"never {state}: {found}")
+            time.sleep(0.02)
+
+
+@contextmanager
+def _served(folder: Path) -> Iterator[_Cell]:
+    cellwright = str(Path(sys.executable).with_name("cellwright"))
+    command = [cellwright, "--path", str(folder), "serve", "yumi_table", "--port", "0"]
+    with subprocess.Popen(command, cwd=folder, stderr=subprocess.PIPE, text=True) as process:
+        assert process.stderr is not None
+        line = process.stderr.readline()
+        try:
+            yield _Cell(int(line.partition("127.0.0.1:")[2].partition("/")[0]), folder)
+        finally:
+            process.terminate()
+            process.wait(60.0)
+
+
+def _floods(cell: _Cell, floods: int, each: int) -> list[Row]:
+    cell.ask("POST", "/missions", {"mission": "idle"})
+    cell.wait_for("running", 20)
+    ratios, found = [], []
+    for number in range(floods):
+        flooded, seen = _rate_while(cell, lambda number=number: _flood(cell, each, number))
+        quiet, _ = _rate_while(cell, lambda seen=seen: time.sleep(seen["took_s"]))
+        ratios.append(flooded / quiet)
+        found.append(seen)
+        print(
+            f"flood {number}: {flooded:.1f} and {quiet:.1f} ticks/s", seen["wrong"], file=sys.stderr
+        )
+    cell.ask("POST", "/cell/stop")
+    cell.wait_for("held")
+    cell.ask("POST", "/cell/resume")
+    asked = sum(one["requests"] for one in found)
+    wrong, lost = (sum(one[name] for one in found) for name in ("wrongs", "lost"))
+    times_ms = [time_ms for one in found for time_ms in one["times_ms"]]
+    per_s = [one["requests"] / one["took_s"] for one in found]
+    return [
+        share("requests_answered", asked - wrong, asked, "= 1"),
+        Row("commands_lost", lost, "1", asked // 5, lost, lost, "= 0"),
+        median("requests_per_s", per_s, "1/s"),
+        percentile_95("request_ms", times_ms, "ms"),
+        median("tick_rate_flooded_over_quiet", ratios, "1", ">= 0.95"),
+    ]
+
+
+def _rate_while(cell: _Cell, act: Any) -> tuple[float, Any]:
+    """Return the tick rate while something is done, and what that returned."""
+    before, began_s = cell.ask("GET", "/cell")["ticks"], time.perf_counter()
+    found = act()
+    return (cell.ask("GET", "/cell")["ticks"] - before) / (time.perf_counter() - began_s), found
+
+
+def _flood(cell: _Cell, each: int, number: int) -> dict[str, Any]:
+    words = [str(cell.port), str(CLIENTS), str(each), f"flood {number}"]
+    command = [sys.executable, "-m", "benchmarks.service_clients", *words]
+    began_s = time.perf_counter()
+    said = subprocess.run(command, capture_output=True, text=True, check=True).stdout
+    return {**json.loads(said), "took_s": time.perf_counter() - began_s}
+
+
+def _stops(cell: _Cell, stops: int, seed: int) -> list[Row]:
+    rng, ended_s, rest_s = np.random.default_rng(seed), [], []
+    for number in range(stops):
+        asked = {"mission": "untangle", "seed": seed + number}
+        mission = cell.ask("POST", "/missions", asked)["id"]
+        cell.wait_for("running", int(rng.integers(15, 60)))
+        began_s = time.perf_counter()
+        cell.ask("POST", "/cell/stop")
+        cell.wait_for("held")
+        ended_s.append(time.perf_counter() - began_s)
+        view = cell.ask("GET", f"/missions/{mission}")
+        rest_s.append(_rest_s(Recording.open(cell.folder / view["recording"])))
+        cell.ask("POST", "/cell/resume")
+    worst = max(rest_s)
+    return [
+        median("stop_request_to_end_s", ended_s, "s"),
+        median("stop_to_rest_s", rest_s, "s"),
+        Row("stop_to_rest_worst_s", worst, "s", stops, worst, worst, f"<= {BOUND_S:g}"),
+    ]
+
+
+def _rest_s(recording: Recording) -> float:
+    """Return the time from the end of the ticks until all joints rest, on the cell's clock [s]."""
+    assert recording.result is not None
+    ended_s = recording.tick(0).time_s + recording.result.report.sim_s
+    moving_s = ended_s
+    for message in recording.streams():
+        if message.topic == "/joint_states" and message.time_s > ended_s:
+            speeds = json.loads(message.data)["velocities"]
+            if max(map(abs, speeds)) > REST_RAD_S:
+                moving_s = message.time_s
+    return moving_s - ended_s
