@@ -1,4 +1,4 @@
-"""Shows a run on the table cell: live in a browser, or as a replay made from its recording.
+"""Shows a run on a simulated cell: live in a browser, or as a replay made from its recording.
 
 Both follow the same messages in their recorded form, so they show the same. What perception
 believes in pixels is laid on the table here, where cameras and robots may both be known.
@@ -21,15 +21,20 @@ from executive.engine.recording.values import ValueEncoder
 from executive.engine.ticks import NodeStatus, Tick
 from perception.cable.types import Trace
 from perception.camera import CameraFrame, CameraModel
+from robots.descriptions import DESCRIPTIONS
 from robots.descriptions.yumi import yumi
 from robots.interfaces import Floats
 from robots.placement import table_scene
-from robots.viewer import CameraCone, LiveViewer, SceneFrame, Stage
+from robots.shelf_arm.scene import ROBOT, ShelfSize, open_scene
+from robots.viewer import CameraCone, Eye, LiveViewer, SceneFrame, ShownBox, Stage
 from robots.viewer import write_html as write_page
 from robots.viewer.rerun_file import RerunFile, need_rerun
 
 _SCENE_TOPIC = "/scene"
 _JOINT_STATES_TOPIC = "/joint_states"
+SHELF_WORLD, SHELF_SCHEMA = "shelf_cell", "ShelfScene"
+# From before the shelf, over the arm's left shoulder.
+SHELF_EYE = Eye((-1.0, -1.85, 1.1), (0.4, -0.3, 0.0))
 _BELIEF_KEY = ":knotted_probability"
 _SHOWN_TYPES = (Trace, CameraFrame, float)
 
@@ -50,6 +55,15 @@ class _Scene(BaseModel):
     links: dict[str, list[float]]
     cable_nodes_m: list[list[float]]
     cable_radius_m: float
+
+
+class _ShelfScene(BaseModel):
+    """A message of the scene stream; see `simulation.shelf_cell.streams`."""
+
+    links: dict[str, list[float]]
+    boxes: dict[str, list[float]]
+    sizes_m: dict[str, tuple[float, float, float]]
+    colours: dict[str, tuple[int, int, int]]
 
 
 class _JointStates(BaseModel):
@@ -107,12 +121,9 @@ class SceneFollower:
         """Return the scene as it is now known; None before its first message."""
         if self._scene is None:
             return None
-        scene = _Scene.model_validate_json(self._scene.data)
-        return SceneFrame(
-            time_s=time_s,
-            link_poses={name: np.array(pose) for name, pose in scene.links.items()},
-            cable_m=np.array(scene.cable_nodes_m),
-            cable_radius_m=scene.cable_radius_m,
+        frame = _shelf_frame if self._scene.schema == SHELF_SCHEMA else _table_frame
+        return replace(
+            frame(self._scene.data, time_s),
             trace_m=self._trace_m,
             camera=self._cone,
             caption=" · ".join(part for part in (self._doing, self._belief) if part),
@@ -139,16 +150,33 @@ class SceneFollower:
             self._cone = CameraCone(camera.T_world_camera[:3, 3], camera.on_plane(corners_px))
 
 
+def _table_frame(data: bytes, time_s: float) -> SceneFrame:
+    scene = _Scene.model_validate_json(data)
+    return SceneFrame(
+        time_s, _arrays(scene.links), np.array(scene.cable_nodes_m), scene.cable_radius_m
+    )
+
+
+def _shelf_frame(data: bytes, time_s: float) -> SceneFrame:
+    scene = _ShelfScene.model_validate_json(data)
+    boxes = {name: ShownBox(scene.sizes_m[name], scene.colours[name]) for name in scene.boxes}
+    return SceneFrame(time_s, _arrays({**scene.links, **scene.boxes}), boxes=boxes)
+
+
+def _arrays(poses: Mapping[str, list[float]]) -> dict[str, Floats]:
+    return {name: np.array(pose) for name, pose in poses.items()}
+
+
 class LiveView:
     """An observer of a run that shows it in a browser."""
 
-    def __init__(self) -> None:
-        """Start the viewer.
+    def __init__(self, world: str) -> None:
+        """Start the viewer for a cell of that world.
 
         Raises:
             DeviceError: It does not start.
         """
-        self._viewer = LiveViewer(_stage())
+        self._viewer = LiveViewer(_stage(world))
         self._follower = SceneFollower()
         self._encoder = ValueEncoder(store_image=lambda _: 0)
         self._alive = True
@@ -183,13 +211,13 @@ class LiveView:
         self._viewer.close()
 
 
-def open_live_view() -> LiveView:
-    """Start a live view of the table cell.
+def open_live_view(world: str) -> LiveView:
+    """Start a live view of a cell, by the name of its world.
 
     Raises:
         DeviceError: The viewer does not start.
     """
-    return LiveView()
+    return LiveView(world)
 
 
 def write_html(recording: Path, page: Path) -> None:
@@ -200,7 +228,7 @@ def write_html(recording: Path, page: Path) -> None:
     """
     run = Recording.open(recording)
     title = f"{run.header.mission}, seed {run.header.seed}"
-    write_page(_stage(), scene_frames(run), page, title=title)
+    write_page(_stage(_world(run)), scene_frames(run), page, title=title)
 
 
 def write_rerun(recording: Path, file: Path) -> None:
@@ -213,7 +241,8 @@ def write_rerun(recording: Path, file: Path) -> None:
     need_rerun("--rerun")
     run = Recording.open(recording)
     with RerunFile(file, f"{run.header.mission}, seed {run.header.seed}") as drawn:
-        drawn.set_stage(yumi(), table_scene())
+        stage = _stage(_world(run))
+        drawn.set_stage(stage.robot, stage.scene)
         doing = ""
         for frame in scene_frames(run):
             drawn.show(frame)
@@ -252,8 +281,17 @@ def scene_frames(recording: Recording) -> Iterator[SceneFrame]:
             yield frame
 
 
-def _stage() -> Stage:
-    return Stage(yumi(), table_scene())
+def _world(run: Recording) -> str:
+    return str(run.header.cell.get("world", ""))
+
+
+def _stage(world: str) -> Stage:
+    """Return what stands still in a world; worlds that show nothing get the table's."""
+    if world != SHELF_WORLD:
+        return Stage(yumi(), table_scene())
+    scene = open_scene(ShelfSize())
+    walls = frozenset({"shelf_top", "left_wall", "right_wall"})
+    return Stage(DESCRIPTIONS[ROBOT](), scene, SHELF_EYE, walls)
 
 
 def _type_name(kind: type) -> str:

@@ -161,7 +161,8 @@ def _recorded_run(
         from executive.engine.running.mission_run import recorded_nodes, run_mission
 
         tree, debugger = prepared.tree, _debugger(subject.debugging, prepared.tree, control)
-        live = [stack.enter_context(closing(_live_view(console)))] if subject.view else []
+        world = prepared.plan.mission.cell.world
+        live = [stack.enter_context(closing(_live_view(world, console)))] if subject.view else []
         with RunDisplay(console, recorded_nodes(tree.nodes)) as display:
             observers: tuple[RunObserver, ...] = (display, *live)
             done = run_mission(prepared.plan, tree, prepared.cell, control, observers, debugger)
@@ -208,10 +209,10 @@ def read_lines(file: Path, parse: Callable[[str], list[T]]) -> list[T]:
         raise InputError(f"{file}: {error}") from None
 
 
-def _live_view(console: Console) -> "LiveView":
+def _live_view(world: str, console: Console) -> "LiveView":
     from executive.app.views import open_live_view
 
-    view = open_live_view()
+    view = open_live_view(world)
     console.print(f"live view: {view.url}")
     return view
 

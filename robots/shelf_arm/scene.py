@@ -17,7 +17,7 @@ BOARD_M = 0.018
 # Shoulder a little below the shelf's floor and far enough back that the arm is not folded up when
 # it looks from before the shelf, nor stretched at its back corners.
 BASE_BEFORE_M, BASE_BELOW_M = 0.62, 0.45
-_CABINET_HEIGHT_M = 0.8
+_CABINET_HEIGHT_M = 0.73
 _COUNTER_WIDTH_M, _COUNTER_GAP_M = 0.36, 0.03
 
 ROBOT = "kinova_j2s7s300"

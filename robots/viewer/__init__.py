@@ -4,9 +4,9 @@ It draws what a recording's scene stream holds, so that a live view and a replay
 The caller turns everything into world coordinates: this package knows no camera.
 """
 
-from robots.viewer.frame import CameraCone, SceneFrame
+from robots.viewer.frame import CameraCone, SceneFrame, ShownBox
 from robots.viewer.html import write_html
 from robots.viewer.live import LiveViewer
-from robots.viewer.stage import Stage
+from robots.viewer.stage import Eye, Stage
 
-__all__ = ["CameraCone", "LiveViewer", "SceneFrame", "Stage", "write_html"]
+__all__ = ["CameraCone", "Eye", "LiveViewer", "SceneFrame", "ShownBox", "Stage", "write_html"]

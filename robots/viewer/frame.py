@@ -1,7 +1,7 @@
 """One moment of a scene, as viewers take it."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -21,6 +21,19 @@ class CameraCone:
     corners_m: Floats
 
 
+@dataclass(frozen=True, slots=True)
+class ShownBox:
+    """A box that moves, as it is drawn.
+
+    Attributes:
+        size_m: Whole edge lengths.
+        colour: Red, green and blue, 0 to 255.
+    """
+
+    size_m: tuple[float, float, float]
+    colour: tuple[int, int, int]
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class SceneFrame:
     """Where everything that moves is at one moment, in the world frame.
@@ -28,22 +41,24 @@ class SceneFrame:
     Attributes:
         time_s: On the cell's clock [s].
         link_poses: Pose of each link's URDF frame by the link's name, shape (7,): position [m],
-            then quaternion xyzw. Links that are left out stay where they were.
-        cable_m: Centre line of the cable in order, shape (N, 3), N >= 2 [m].
+            then quaternion xyzw; of each box its middle. What is left out stays where it was.
+        cable_m: Centre line of the cable in order, shape (N, 3), N >= 2 [m]; None without one.
         cable_radius_m: Radius of the cable [m].
         trace_m: What perception last took for the cable, shape (M, 3), M >= 2 [m]; None before
             the first look.
         camera: The overhead camera; None before the first look.
         caption: One line on what goes on, e.g. the running node and its belief.
+        boxes: Boxes that move, by names that no link has; the same in every frame.
     """
 
     time_s: float
     link_poses: Mapping[str, Floats]
-    cable_m: Floats
-    cable_radius_m: float
+    cable_m: Floats | None = None
+    cable_radius_m: float = 0.0
     trace_m: Floats | None = None
     camera: CameraCone | None = None
     caption: str = ""
+    boxes: Mapping[str, ShownBox] = field(default_factory=dict)
 
 
 def thinned(points: Floats, count: int) -> Floats:

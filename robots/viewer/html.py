@@ -21,6 +21,7 @@ from robots.viewer.stage import (
     TRACE_POINTS,
     TRACE_RADIUS_M,
     Stage,
+    draw_box,
     draw_cable,
     draw_camera,
     draw_trace,
@@ -45,7 +46,7 @@ def write_html(
     Args:
         stage: The cell.
         frames: In order of time; all with the same number of cable points or more than
-            `CABLE_POINTS`.
+            `CABLE_POINTS`, or all without a cable, and all with the same boxes.
         path: The HTML file; its folder exists.
         title: Shown in the page.
         rate_hz: Frames kept a second; fewer when there would be more than 2400.
@@ -99,12 +100,11 @@ def _still(stage: Stage, frames: Sequence[SceneFrame]) -> dict[str, object]:
     """
     first = frames[0]
     cameras = [frame.camera for frame in frames if frame.camera is not None]
-    commands = [
-        *stage.commands(),
-        draw_cable(first),
-        draw_trace(replace(first, trace_m=first.cable_m)),
-        *(draw_camera(cameras[0]) if cameras else ()),
-    ]
+    commands = [*stage.commands(), *(draw_box(name, box) for name, box in first.boxes.items())]
+    if first.cable_m is not None:
+        commands.append(draw_cable(first.cable_m, first.cable_radius_m))
+        commands.append(draw_trace(replace(first, trace_m=first.cable_m)))
+    commands += draw_camera(cameras[0]) if cameras else ()
     return {
         "commands": [_text(umsgpack.packb(command.lower())) for command in commands],
         "metre": METRE,
@@ -116,7 +116,7 @@ def _still(stage: Stage, frames: Sequence[SceneFrame]) -> dict[str, object]:
 
 def _moving(stage: Stage, frames: Sequence[SceneFrame]) -> dict[str, object]:
     """Return the first time, all times from it on, poses and cable a frame, traces, captions."""
-    known = {link.name for link in stage.robot.links if link.shapes}
+    known = {link.name for link in stage.robot.links if link.shapes} | frames[0].boxes.keys()
     links = sorted(known & frames[0].link_poses.keys())
     poses: dict[str, Floats] = {}
     rows = []
@@ -140,7 +140,9 @@ def _poses(poses: Mapping[str, Floats], links: Sequence[str]) -> Floats:
     return _whole(np.hstack([rows[:, :3] / METRE, rows[:, 3:] * _QUATERNION_ONE]))
 
 
-def _points(points_m: Floats, count: int) -> Floats:
+def _points(points_m: Floats | None, count: int) -> Floats:
+    if points_m is None:
+        return np.zeros(0)
     return _whole(thinned(points_m, count) / METRE)
 
 
@@ -154,8 +156,7 @@ def _traces(frames: Sequence[SceneFrame], times_s: Sequence[float]) -> list[tupl
     shown: Floats | None = None
     for frame, time_s in zip(frames, times_s, strict=True):
         if frame.trace_m is not shown:
-            none = np.empty((0, 3))
-            points = _points(none if frame.trace_m is None else frame.trace_m, TRACE_POINTS)
+            points = _points(frame.trace_m, TRACE_POINTS)
             changes.append((time_s, _text(points.astype("<i2").tobytes())))
         shown = frame.trace_m
     return changes

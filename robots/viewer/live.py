@@ -13,7 +13,7 @@ import zmq
 from executive.core.errors import DeviceError
 from robots.interfaces import Floats
 from robots.viewer.frame import CameraCone, SceneFrame
-from robots.viewer.stage import Stage, draw_cable, draw_camera, draw_trace, move_link
+from robots.viewer.stage import Stage, draw_box, draw_cable, draw_camera, draw_trace, move_link
 
 SERVER_COMMAND = (sys.executable, "-u", "-m", "meshcat.servers.zmqserver")
 _ANSWER_MS = 5_000
@@ -40,6 +40,7 @@ class LiveViewer:
         self._min_interval_s = min_interval_s
         self._last_s = -np.inf
         self._poses: dict[str, Floats] = {}
+        self._boxes: set[str] = set()
         self._trace: Floats | None = None
         self._camera: CameraCone | None = None
         self._server = subprocess.Popen(
@@ -69,11 +70,16 @@ class LiveViewer:
         if now_s - self._last_s < self._min_interval_s:
             return
         self._last_s = now_s
+        for name, box in frame.boxes.items():
+            if name not in self._boxes:
+                self._send(draw_box(name, box))
+                self._boxes.add(name)
         for name, pose in frame.link_poses.items():
             if name not in self._poses or np.abs(pose - self._poses[name]).max() > _MOVED:
                 self._send(move_link(name, pose))
                 self._poses[name] = pose
-        self._send(draw_cable(frame))
+        if frame.cable_m is not None:
+            self._send(draw_cable(frame.cable_m, frame.cable_radius_m))
         if frame.trace_m is not self._trace:
             self._send(draw_trace(frame))
             self._trace = frame.trace_m

@@ -15,6 +15,7 @@
   const data = whole(recording.frames);
   const traces = recording.traces.map(([time, points]) => [time, vectors(whole(points))]);
   const linkObjects = links.map((name) => viewer.scene_tree.find(["robot", name]).object);
+  // A cell without a cable has neither of the two.
   const cable = viewer.scene_tree.find(["cable", "<object>"]).object;
   const trace = viewer.scene_tree.find(["trace", "<object>"]).object;
   const end = times[times.length - 1];
@@ -65,7 +66,9 @@
         from[at + 6]).normalize();
       object.quaternion.copy(turn(a)).slerp(turn(b), share);
     });
-    bend(cable, vectors(mixed.subarray(7 * links.length)), recording.cable_radius);
+    if (recording.cable_radius > 0) {
+      bend(cable, vectors(mixed.subarray(7 * links.length)), recording.cable_radius);
+    }
 
     const points = latest(traces, now) ?? [];
     trace.visible = points.length > 0;

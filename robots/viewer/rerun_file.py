@@ -96,6 +96,13 @@ class RerunFile:
     def show(self, frame: SceneFrame) -> None:
         """Write one moment; links that have not moved are left out."""
         self._at(frame.time_s)
+        for name, shown in frame.boxes.items():
+            if name not in self._poses:
+                half_m = np.array(shown.size_m) / 2.0
+                solid = self._rerun.Boxes3D(
+                    half_sizes=[half_m], colors=[shown.colour], fill_mode="solid"
+                )
+                self._still(f"world/robot/{name}/box", solid)
         for name, pose in frame.link_poses.items():
             if name not in self._poses or np.abs(pose - self._poses[name]).max() > _MOVED:
                 self._poses[name] = pose
@@ -103,7 +110,8 @@ class RerunFile:
                     translation=pose[:3], quaternion=self._rerun.Quaternion(xyzw=pose[3:])
                 )
                 self._file.log(f"world/robot/{name}", placed)
-        self._line("world/cable", [frame.cable_m], frame.cable_radius_m, _CABLE)
+        if frame.cable_m is not None:
+            self._line("world/cable", [frame.cable_m], frame.cable_radius_m, _CABLE)
         if frame.trace_m is not None and frame.trace_m is not self._trace:
             self._trace = frame.trace_m
             self._line("world/trace", [frame.trace_m], _TRACE_RADIUS_M, _TRACE)

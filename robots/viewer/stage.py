@@ -18,10 +18,10 @@ from meshcat.path import Path
 from scipy.spatial.transform import Rotation
 
 from robots.descriptions.model import Box as DescribedBox
-from robots.descriptions.model import Link, RobotDescription, Vec3
+from robots.descriptions.model import Link, RobotDescription, Shape, Vec3
 from robots.interfaces import Floats
 from robots.placement import Placement, PlanningScene, StaticBox
-from robots.viewer.frame import CameraCone, SceneFrame, thinned
+from robots.viewer.frame import CameraCone, SceneFrame, ShownBox, thinned
 from robots.viewer.shapes import Tube, drawn
 
 CABLE_POINTS = 120
@@ -33,14 +33,13 @@ _TRACE = MeshBasicMaterial(color=0xFF9A2E, opacity=0.8)
 _WOOD = MeshPhongMaterial(color=0xB9A68A)
 _CLOTH = MeshPhongMaterial(color=0x17181B, shininess=2)
 _METAL = MeshPhongMaterial(color=0x8A8F98)
+_GLASS = MeshPhongMaterial(color=0xB9A68A, opacity=0.3, transparent=True)
 _LENS = MeshPhongMaterial(color=0x2B2F36)
 _SIGHT = LineBasicMaterial(color=0x5B8DEF)
 
 _FLOOR_M = -0.75
 _CLOTH_M = 0.002
 _CAMERA_BOX_M = (0.10, 0.06, 0.06)
-# Where the eye stands at first, world axes [m]; it looks at the table's centre.
-_EYE_M: Vec3 = (0.85, 1.50, 1.05)
 _FIELD_OF_VIEW_DEG = 42.0
 # Meshcat's own lights, dimmed so that a white robot keeps its shape.
 _LIGHTS = {
@@ -51,6 +50,19 @@ _LIGHTS = {
 }
 
 
+@dataclass(frozen=True, slots=True)
+class Eye:
+    """Where one looks from at first, and where to, in the world [m].
+
+    Attributes:
+        from_m: Of the eye.
+        to_m: What is in the middle of the picture, and what the eye turns about.
+    """
+
+    from_m: Vec3
+    to_m: Vec3 = (0.0, 0.0, 0.0)
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Stage:
     """A cell before anything moves.
@@ -59,16 +71,22 @@ class Stage:
         robot: Its links are drawn from its shapes.
         scene: Where the robot stands, and the boxes around it; a box named `table` gets a
             cloth and legs.
+        eye: From where it is looked at.
+        glass: Names of boxes that are drawn so that one can look through them.
     """
 
     robot: RobotDescription
     scene: PlanningScene
+    eye: Eye = Eye((0.85, 1.50, 1.05))
+    glass: frozenset[str] = frozenset()
 
     def commands(self) -> Iterator[Any]:
         """Yield the commands that build the scene."""
-        yield from _surroundings()
+        yield from _surroundings(self.eye)
         for box in self.scene.boxes:
-            yield from _table(box) if box.name == "table" else _box(f"cell/{box.name}", box, _METAL)
+            material = _GLASS if box.name in self.glass else _METAL
+            path = f"cell/{box.name}"
+            yield from _table(box) if box.name == "table" else _box(path, box, material)
         yield from self._robot()
 
     def _robot(self) -> Iterator[Any]:
@@ -98,9 +116,16 @@ def move_link(name: str, pose: Floats) -> SetTransform:
     return SetTransform(T_world_link, _path(f"robot/{name}"))
 
 
-def draw_cable(frame: SceneFrame) -> SetObject:
-    """Return the command that draws the cable as it lies in a frame."""
-    tube = Tube(thinned(frame.cable_m, CABLE_POINTS), frame.cable_radius_m)
+def draw_box(name: str, box: ShownBox) -> SetObject:
+    """Return the command that draws a box that moves; `move_link` puts it to its place."""
+    red, green, blue = box.colour
+    material = MeshPhongMaterial(color=(red << 16) + (green << 8) + blue, shininess=8)
+    return SetObject(Box(list(box.size_m)), material, _path(f"robot/{name}"))
+
+
+def draw_cable(cable_m: Floats, radius_m: float) -> SetObject:
+    """Return the command that draws a cable along its centre line, shape (N, 3)."""
+    tube = Tube(thinned(cable_m, CABLE_POINTS), radius_m)
     return SetObject(tube, _CABLE, _path("cable"))
 
 
@@ -116,7 +141,7 @@ def _path(text: str) -> Path:
     return Path(tuple(text.split("/")))
 
 
-def _surroundings() -> Iterator[Any]:
+def _surroundings(eye_at: Eye) -> Iterator[Any]:
     """Set the background, the lights, the floor and the eye."""
     yield SetProperty("top_color", [0.93, 0.95, 0.97], _path("Background"))
     yield SetProperty("bottom_color", [0.70, 0.74, 0.79], _path("Background"))
@@ -125,7 +150,8 @@ def _surroundings() -> Iterator[Any]:
     for light, intensity in _LIGHTS.items():
         yield SetProperty("intensity", intensity, _path(f"Lights/{light}/<object>"))
     eye = _path("Cameras/default/rotated/<object>")
-    x, y, z = _EYE_M
+    yield SetTransform(_shift(eye_at.to_m), _path("Cameras/default"))
+    x, y, z = np.subtract(eye_at.from_m, eye_at.to_m).tolist()
     yield SetProperty("position", [x, z, -y], eye)  # the eye's own frame has y up
     yield SetProperty("fov", _FIELD_OF_VIEW_DEG, eye)
 
@@ -142,9 +168,8 @@ def _table(top: StaticBox) -> Iterator[Any]:
 
 
 def _pedestal(root: Link, placement: Placement) -> Iterator[Any]:
-    """Put a block under the first box of the robot's root, down to the floor."""
-    base = next(shape for shape in root.shapes if isinstance(shape, DescribedBox))
-    low_m, high_m = np.asarray(base.low_m), np.asarray(base.high_m)
+    """Put a block under the first shape of the robot's root, down to the floor."""
+    low_m, high_m = _bounds(root.shapes[0])
     under_m = placement.position_m[2] + low_m[2] - _FLOOR_M
     middle_m = (low_m + high_m) / 2
     T_world_block = np.eye(4)
@@ -156,6 +181,14 @@ def _pedestal(root: Link, placement: Placement) -> Iterator[Any]:
     width, depth = (high_m - low_m)[:2]
     yield SetObject(Box([width, depth, under_m]), _METAL, path)
     yield SetTransform(T_world_block, path)
+
+
+def _bounds(shape: Shape) -> tuple[Floats, Floats]:
+    """Return the lowest and the highest corner around a shape in its link [m]."""
+    if isinstance(shape, DescribedBox):
+        return np.asarray(shape.low_m), np.asarray(shape.high_m)
+    ends_m = np.array([shape.start_m, shape.end_m])
+    return ends_m.min(axis=0) - shape.radius_m, ends_m.max(axis=0) + shape.radius_m
 
 
 def draw_camera(camera: CameraCone) -> Iterator[Any]:
