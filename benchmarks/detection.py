@@ -6,7 +6,10 @@ editions of its packages. An object is asked for when a tenth of it is shown. It
 """
 
 from collections.abc import Callable, Sequence
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
+from functools import cache, partial
+from multiprocessing import get_context
 from typing import Final
 
 import numpy as np
@@ -26,8 +29,9 @@ from simulation.shelf.scenes import SceneRules
 from simulation.shelf.taxonomy import Domain, shipped_domain
 from simulation.shelf.teaching import labelled_scene
 
+DOMAIN: Final = "pharmacy"
 FIRST_SEED: Final = 90_000
-SCENES, HARD_SCENES = 100, 40
+SCENES, HARD_SCENES = 100, 30
 QUICK = 6
 LEAST_SHOWN = 0.1
 STAGES: Final = ("looks", "text", "nearer", "company")
@@ -73,13 +77,9 @@ HARD = _Regime("hard", HARD_WIDTH_PX, HARD_NEAR_WIDTH_PX, HARD_LOOKS)
 
 def run(quick: bool, seed: int) -> Sequence[Row]:
     """Return the rows of both regimes."""
-    domain = shipped_domain("pharmacy")
-    wordings = [Wording(thing.name, thing.brand) for thing in domain.objects]
-    detector = product_detector(domain.name, wordings, RapidReader())
     first = FIRST_SEED + 10_000 * seed
-    usual = _results(domain, detector, USUAL, range(first, first + (QUICK if quick else SCENES)))
-    count = QUICK if quick else HARD_SCENES
-    hard = _results(domain, detector, HARD, range(first + 5000, first + 5000 + count))
+    usual = _results(USUAL, range(first, first + (QUICK if quick else SCENES)))
+    hard = _results(HARD, range(first + 5000, first + 5000 + (QUICK if quick else HARD_SCENES)))
     rows = _stable_rows(usual)
     for regime, results in ((USUAL, usual), (HARD, hard)):
         rows += _stage_rows(regime.name, results) + _gain_rows(regime.name, results)
@@ -87,13 +87,21 @@ def run(quick: bool, seed: int) -> Sequence[Row]:
     return rows
 
 
-def _results(
-    domain: Domain, detector: ProductDetector, regime: _Regime, seeds: range
-) -> list[_Result]:
-    return [_result(domain, detector, regime, seed) for seed in seeds]
+def _results(regime: _Regime, seeds: range) -> list[_Result]:
+    """Run scenes, one process for each core."""
+    with ProcessPoolExecutor(mp_context=get_context("spawn")) as pool:
+        return list(pool.map(partial(_result, regime), seeds))
 
 
-def _result(domain: Domain, detector: ProductDetector, regime: _Regime, seed: int) -> _Result:
+@cache
+def _detector(domain: Domain) -> ProductDetector:
+    wordings = [Wording(thing.name, thing.brand) for thing in domain.objects]
+    return product_detector(domain.name, wordings, RapidReader())
+
+
+def _result(regime: _Regime, seed: int) -> _Result:
+    domain = shipped_domain(DOMAIN)
+    detector = _detector(domain)
     scene, shelf = labelled_scene(domain, SceneRules(15), regime.looks, seed)
     camera = overview_camera(scene.shelf, regime.width_px)
     near = near_cameras(scene.shelf, regime.near_width_px)

@@ -22,10 +22,17 @@ Ints = NDArray[np.int64]
 STEP_M = 0.004
 # The same between columns of a patch, whose noise is that of many pixels: height and distance.
 PROFILE_STEP_M = np.array([0.003, 0.002])
-# Nearer to a wall than this is the wall.
-WALL_M = 0.008
+# Nearer than this is a side wall, the floor, the back. Floor and sides are seen at grazing angles,
+# where errors of depth move points along them.
+SIDE_M, FLOOR_M, BACK_M = 0.002, 0.0008, 0.006
+# Farther before the shelf is no part of it.
+FRONT_M = 0.02
 # Smallest object, as a share of the image's width squared; smaller patches are noise or slivers.
 LEAST_SHARE = 7e-5
+# Width of the rim of a patch that its own jumps have taken.
+RIM_PX = 2
+# What is thinner than so many pixels in images of this width, or than three, is no part of an object.
+TAIL_PX, TAIL_WIDTH_PX = 5, 1280
 # So far around an upper edge its height is looked at, as a share of the image's width.
 EDGE_SHARE = 0.004
 
@@ -48,11 +55,11 @@ def shelf_points(frame: RgbdFrame, shelf: Shelf) -> ShelfPoints:
     """Measure the pixels of a frame."""
     caster = BoxCaster(frame.camera)
     filled = cv2.medianBlur(np.nan_to_num(frame.depth_m, nan=0.0).astype(np.float32), 5)
-    size_m = np.array([shelf.width_m, shelf.depth_m, shelf.height_m])
-    enter_m, leave_m = caster.inside(np.zeros(3), size_m)
-    depth_m = filled.astype(np.float64)
-    things = (depth_m < leave_m - WALL_M) & (depth_m > enter_m - WALL_M) & (leave_m > enter_m)
-    return ShelfPoints(caster.origin_m + depth_m[..., None] * caster.rays, np.asarray(things))
+    points_m = caster.origin_m + filled.astype(np.float64)[..., None] * caster.rays
+    low_m = np.array([SIDE_M, -FRONT_M, FLOOR_M])
+    high_m = np.array([shelf.width_m - SIDE_M, shelf.depth_m - BACK_M, shelf.height_m - SIDE_M])
+    inside = ((points_m > low_m) & (points_m < high_m)).all(axis=2)
+    return ShelfPoints(points_m, np.asarray(inside & (filled > 0.0)))
 
 
 def segmented(points: ShelfPoints) -> Segments:
@@ -64,13 +71,14 @@ def segmented(points: ShelfPoints) -> Segments:
     Returns:
         Which object each pixel shows, by number, or `NOTHING`; shape (height, width).
     """
-    y_m = points.points_m[..., 1]
-    calm = points.things & ~_jumps(y_m)
-    numbers, _ = label(calm)
-    least_px = round(LEAST_SHARE * numbers.shape[1] ** 2)
+    least_px = round(LEAST_SHARE * points.things.shape[1] ** 2)
+    # Specks would stretch the object that is nearest to them.
+    things = _large(label(points.things)[0], least_px) > 0
+    points = ShelfPoints(points.points_m, things)
+    numbers, _ = label(things & ~_jumps(points.points_m[..., 1]))
     numbers = _split_by_profile(_large(numbers, least_px), points)
     numbers = _joined_behind(_large(numbers, least_px), points)
-    return _grown(numbers, points.things)
+    return _grown(numbers, points)
 
 
 def _jumps(y_m: Floats) -> Bools:
@@ -173,11 +181,29 @@ def _one_behind(left: _Front, right: _Front, numbers: Segments, points: ShelfPoi
     return bool(nearer.any(axis=0).mean() > 0.9)
 
 
-def _grown(numbers: Segments, things: Bools) -> Segments:
-    """Give every pixel of a thing to the patch that is nearest in the image."""
+def _grown(numbers: Segments, points: ShelfPoints) -> Segments:
+    """Give every pixel of a thing to the patch beside it at its distance, or else the nearest."""
     if not numbers.any():
         return np.full(numbers.shape, NOTHING, dtype=np.int16)
-    rows, columns = distance_transform_edt(
-        numbers == 0, return_distances=False, return_indices=True
-    )
-    return np.where(things, numbers[rows, columns] - 1, NOTHING).astype(np.int16)
+    grown, y_m = numbers.copy(), points.points_m[..., 1]
+    for _ in range(RIM_PX):
+        for axis in (0, 1):
+            for step in (-1, 1):
+                beside = np.roll(grown, step, axis)
+                level = np.abs(np.roll(y_m, step, axis) - y_m) < STEP_M
+                taken = (grown == 0) & level & points.things
+                grown[taken] = beside[taken]
+    rows, columns = distance_transform_edt(grown == 0, return_distances=False, return_indices=True)
+    whole = np.where(points.things, grown[rows, columns], 0).astype(np.int16)
+    return np.where(_without_tails(whole), whole - 1, NOTHING).astype(np.int16)
+
+
+def _without_tails(numbers: Segments) -> Bools:
+    """Say which pixels are no thin tail of their patch, as mixed depth at edges makes them."""
+    kept = np.zeros(numbers.shape, dtype=bool)
+    side_px = max(3, round(TAIL_PX * numbers.shape[1] / TAIL_WIDTH_PX) // 2 * 2 + 1)
+    brush = np.ones((side_px, side_px), np.uint8)
+    for number in range(1, int(numbers.max()) + 1):
+        patch = (numbers == number).astype(np.uint8)
+        kept |= cv2.morphologyEx(patch, cv2.MORPH_OPEN, brush) > 0
+    return kept
