@@ -31,7 +31,7 @@ FRONT_M = 0.02
 LEAST_SHARE = 7e-5
 # Width of the rim of a patch that its own jumps have taken.
 RIM_PX = 2
-# What is thinner than so many pixels in images of this width, or than three, is no part of an object.
+# What is thinner than so many pixels in images of this width, or than three, is no object.
 TAIL_PX, TAIL_WIDTH_PX = 5, 1280
 # So far around an upper edge its height is looked at, as a share of the image's width.
 EDGE_SHARE = 0.004
