@@ -222,10 +222,17 @@ def test_a_live_view_is_told_of_the_run_and_closed(mission, monkeypatch):
             self.calls.append("close")
 
     views = type(sys)("executive.app.views")
-    views.open_live_view = View
+    worlds = []
+
+    def open_live_view(world):
+        worlds.append(world)
+        return View()
+
+    views.open_live_view = open_live_view
     monkeypatch.setitem(sys.modules, "executive.app.views", views)
     result = run(mission, "--view")
     assert View.url in result.stderr
+    assert worlds == ["toy"]
     assert View.calls.count("tick") == 4
     assert View.calls.count("/toy") == 4
     assert View.calls[-1] == "close"

@@ -136,7 +136,7 @@ def test_a_recording_without_a_scene_has_no_replay(tmp_path):
 
 def test_live_view_shows_what_the_replay_shows(recording, monkeypatch):
     monkeypatch.setattr(views, "LiveViewer", Screen)
-    live = views.open_live_view()
+    live = views.open_live_view("table_cell")
     play(live)
     live.close()
     shown, replayed = live._viewer.frames, list(views.scene_frames(Recording.open(recording)))
@@ -149,7 +149,7 @@ def test_live_view_shows_what_the_replay_shows(recording, monkeypatch):
 
 def test_a_viewer_that_breaks_goes_dark_and_the_run_goes_on(monkeypatch, caplog):
     monkeypatch.setattr(views, "LiveViewer", lambda stage: Screen(stage, broken=True))
-    live = views.open_live_view()
+    live = views.open_live_view("table_cell")
     play(live)
     assert live._viewer.shows == 1
     assert "viewer: gone" in caplog.text
