@@ -8,6 +8,7 @@ and kept what it had. `docs/faults.md` tells what that is for each.
 import json
 import subprocess
 import tempfile
+import time
 from collections.abc import Callable, Sequence
 from functools import cache, partial
 from pathlib import Path
@@ -25,7 +26,7 @@ from benchmarks.fault_missions import (
 from benchmarks.harness import Row, share
 from executive.app.campaigns.folder import CampaignFolder
 from executive.app.missions import load
-from executive.core.errors import CellwrightError, InputError
+from executive.core.errors import CellwrightError, DeviceError, InputError
 from executive.engine.loading.library import packaged_trees
 from executive.engine.recording.reader import Recording
 
@@ -45,7 +46,7 @@ def run(quick: bool, seed: int) -> Sequence[Row]:
         ("recording_on_full_disk_told_and_kept", few * len(LIMITS_BYTES), _disk_full),
         ("campaign_on_full_disk_told_and_resumed", few, _campaign_on_full_disk),
         ("frozen_camera_ends_in_order", few, _frozen_camera),
-        ("cut_off_driver_told", few, _lagging_driver),
+        ("frozen_driver_told", few, _frozen_driver),
         ("second_service_refused", few, _second_service),
         ("damaged_recording_read_or_refused", files, _damaged_recording),
         ("damaged_tree_refused_or_sound", files, _damaged_tree),
@@ -151,30 +152,31 @@ def _frozen_camera(folder: Path, rng: np.random.Generator) -> bool:
     return answer.returncode in (0, 1) and recording.result is not None
 
 
-def _lagging_driver(_: Path, rng: np.random.Generator) -> bool:
-    """Let nearly all messages be lost: both sides notice, the arms stop by themselves."""
+def _frozen_driver(_: Path, rng: np.random.Generator) -> bool:
+    """Let a controller hang while its arms move: the driver says so, and nothing waits for it."""
     from robots.drivers.socket_arms import SocketArms
     from robots.dual_arm import PlannedDualArm
     from robots.interfaces import MotionFailure
     from simulation.loopback.process import LoopbackProcess
-    from simulation.loopback.settings import LoopbackSettings
 
-    settings = LoopbackSettings(lockstep=True, loss=float(rng.uniform(0.9, 0.99)))
-    with LoopbackProcess(settings) as controller:
-        driver = None
+    with LoopbackProcess() as controller:
+        driver = SocketArms(controller.host, controller.port)
+        arms = PlannedDualArm(driver, seed=0)
+        motion = arms.plan_line({"left": np.array([0.0, 0.0, 0.05])})
+        assert not isinstance(motion, MotionFailure)
+        arms.start(motion)
+        driver.clock.sleep_until(driver.clock.now_s() + float(rng.uniform(0.0, 0.3)))
+        controller.freeze()
+        deadline = time.monotonic() + 20.0
         try:
-            driver = SocketArms(controller.host, controller.port)
-            arms = PlannedDualArm(driver, seed=0)
-            motion = arms.plan_line({"left": np.array([0.0, 0.0, 0.05])})
-            assert not isinstance(motion, MotionFailure)
-            arms.start(motion)
-            for _cycle in range(400):
-                driver.clock.sleep_until(driver.clock.now_s() + 0.02)
-        except CellwrightError:
+            while time.monotonic() < deadline:
+                time.sleep(0.02)
+                arms.moving()
+        except DeviceError:
             return True
         finally:
-            if driver is not None:
-                driver.close()
+            controller.thaw()
+            driver.close()
     return False
 
 
