@@ -185,6 +185,7 @@ def _grown(numbers: Segments, points: ShelfPoints) -> Segments:
     """Give every pixel of a thing to the patch beside it at its distance, or else the nearest."""
     if not numbers.any():
         return np.full(numbers.shape, NOTHING, dtype=np.int16)
+    # NOTHING is -1, one less than the first number.
     grown, y_m = numbers.copy(), points.points_m[..., 1]
     for _ in range(RIM_PX):
         for axis in (0, 1):
@@ -195,7 +196,7 @@ def _grown(numbers: Segments, points: ShelfPoints) -> Segments:
                 grown[taken] = beside[taken]
     rows, columns = distance_transform_edt(grown == 0, return_distances=False, return_indices=True)
     whole = np.where(points.things, grown[rows, columns], 0).astype(np.int16)
-    return np.where(_without_tails(whole), whole - 1, NOTHING).astype(np.int16)
+    return _large(np.where(_without_tails(whole), whole, 0).astype(np.int16), 1) - np.int16(1)
 
 
 def _without_tails(numbers: Segments) -> Bools:

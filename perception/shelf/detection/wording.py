@@ -49,6 +49,8 @@ class TextModel:
     def __init__(self, wordings: Sequence[Wording]) -> None:
         """Take what is printed on the products, N of them."""
         self._names = _codes([wording.name for wording in wordings])
+        lengths = (self._names != _PADDING).sum(axis=1)
+        self._surplus = np.maximum(lengths - BY_CHANCE, 1.0)
         # A brand that is the name would count twice.
         self._brands = _codes(
             [
@@ -69,7 +71,10 @@ class TextModel:
         agreeing = np.maximum(names - BY_CHANCE, 0.0) + np.maximum(brands - BY_CHANCE, 0.0)
         size = len(plain(text if title is None else title))
         spare = size - float((names + brands).max()) - SPARE_LETTERS
-        logits = PER_LETTER * np.append(agreeing, np.clip(spare, 0.0, MOST_STRANGE))
+        # Beside a name that is there as a whole, what else is written is print.
+        lacking = 1.0 - min(1.0, float((np.maximum(names - BY_CHANCE, 0.0) / self._surplus).max()))
+        strange = lacking * float(np.clip(spare, 0.0, MOST_STRANGE))
+        logits = PER_LETTER * np.append(agreeing, strange)
         logits[-1] += np.log(UNKNOWN)
         powers = np.exp(logits - logits.max())
         read = powers / powers.sum()
