@@ -43,7 +43,7 @@ class Depth:
     """
 
     moves: int = 3
-    beam: int = 5
+    beam: int = 8
     steps_m: tuple[float, float, float] = (0.03, 0.05, 0.08)
     tail: float = 1.5
     block_m: float = 0.02
