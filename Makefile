@@ -12,7 +12,7 @@ export OPENBLAS_NUM_THREADS ?= 1
 export MKL_NUM_THREADS ?= 1
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test check fmt fmt-check lint types layers trees docs pages freeze clean
+.PHONY: help setup demo test check fmt fmt-check lint types layers trees docs pages freeze fresh clean
 
 help: ## List these words
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "  make %-12s %s\n", $$1, $$2}' $(firstword $(MAKEFILE_LIST))
@@ -50,6 +50,9 @@ demo: setup ## Untie a knotted cable with the simulated YuMi, and record it
 	@echo "Open next:"
 	@echo "  runs/demo.html   in a browser: arms, cable and trace, with a time slider"
 	@echo "  runs/demo.mcap   with $(BIN)/cellwright inspect runs/demo.mcap, tick by tick"
+
+fresh: ## Do what the README says in an empty clone with an empty home
+	scripts/fresh_machine.sh
 
 test: setup ## Run all tests
 	$(BIN)/pytest -n auto
