@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 
 from executive.core.errors import DeviceError
 from perception.camera import CameraFrame, CameraModel
-from robots.placement import TABLE_SIZE_M
+from robots.placement import TABLE_SIZE_M, Rectangle
 from simulation.poses import pose_matrices
 from simulation.render.primitives import join
 from simulation.render.renderer import Renderer
@@ -34,6 +34,15 @@ def overhead_camera_model(config: CameraConfig) -> CameraModel:
         centre_px=(0.5 * (_WIDTH_PX - 1), 0.5 * (_HEIGHT_PX - 1)),
         T_world_camera=T_world_camera,
     )
+
+
+def seen_rectangle(config: CameraConfig) -> Rectangle:
+    """Return what the overhead camera sees of the table."""
+    half_m = [
+        min(0.5 * pixels * config.scale_m_px, 0.5 * size)
+        for pixels, size in zip((_WIDTH_PX, _HEIGHT_PX), TABLE_SIZE_M, strict=True)
+    ]
+    return Rectangle((-half_m[0], -half_m[1]), (half_m[0], half_m[1]))
 
 
 def miscalibrated(

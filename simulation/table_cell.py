@@ -11,6 +11,7 @@ from executive.core.world import StreamMessage
 from simulation.arms_driver import SimArmsDriver
 from simulation.cable.configuration_file import configuration_from_file
 from simulation.cable.configurations import starting_configuration
+from simulation.cable.parameters import RodParameters
 from simulation.cable.tiers import tier_cable
 from simulation.cable.truth import CableTruth, cable_truth
 from simulation.clock import SimClock
@@ -23,6 +24,7 @@ from simulation.table_cell_config import (
     TableScenario,
     read_settings,
 )
+from simulation.table_setup import planning_scene, rod_parameters
 from simulation.table_world import TableWorld
 
 Floats = NDArray[np.float64]
@@ -35,7 +37,8 @@ class TableCell:
         clock: The world's time; waiting on it lets the physics go on.
         driver: Controllers of both arms.
         camera: Looks straight down on the table.
-        devices: The three above, by name.
+        scene: Where the robot stands, and what it must not touch; for the planner.
+        devices: Clock, driver and camera, by name.
     """
 
     def __init__(
@@ -54,8 +57,12 @@ class TableCell:
         settings = read_settings(TableCellConfig, config, "cell config")
         cable = read_settings(TableScenario, scenario, "scenario").cable
         cable_seed, camera_seed, faults_seed = np.random.SeedSequence(seed).spawn(3)
-        nodes_m = _lay_cable(cable, np.random.default_rng(cable_seed))
-        self._world = TableWorld(nodes_m, settings.physics.step_hz)
+        parameters = rod_parameters(settings.cable)
+        nodes_m = _lay_cable(cable, np.random.default_rng(cable_seed), parameters)
+        self.scene = planning_scene(settings.layout)
+        self._world = TableWorld(
+            nodes_m, settings.physics.step_hz, self.scene.placement, parameters
+        )
         self.driver: SimArmsDriver = self._world.driver
         self.camera = OverheadCamera(
             self._world,
@@ -172,9 +179,11 @@ class TableCell:
             )
 
 
-def _lay_cable(cable: CableScenario, rng: np.random.Generator) -> Floats:
+def _lay_cable(cable: CableScenario, rng: np.random.Generator, parameters: RodParameters) -> Floats:
     if cable.file:
         return configuration_from_file(Path(cable.file))
     if cable.tier is not None:
-        return tier_cable(cable.tier, rng, leaves_view=cable.leaves_view).nodes_m
-    return starting_configuration(cable.knot, rng)
+        return tier_cable(
+            cable.tier, rng, leaves_view=cable.leaves_view, parameters=parameters
+        ).nodes_m
+    return starting_configuration(cable.knot, rng, parameters)

@@ -1,7 +1,7 @@
 """What can be set about the table cell: light to import, checked before anything is built."""
 
 from collections.abc import Mapping
-from typing import Annotated, Self, TypeVar
+from typing import Annotated, Literal, Self, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 from pydantic_core import ErrorDetails
@@ -9,6 +9,9 @@ from pydantic_core import ErrorDetails
 from executive.core.errors import InputError
 from executive.core.registry import closest
 from simulation.cable.knot_names import KnotName, TierName
+
+
+Stiffness = Literal["soft", "usual", "stiff"]
 
 
 class _Document(BaseModel):
@@ -90,10 +93,39 @@ class PhysicsConfig(_Document):
     scene_hz: Annotated[int, Field(ge=1, le=60)] = 5
 
 
+class CableConfig(_Document):
+    """What cables in this cell are made of.
+
+    Attributes:
+        stiffness: A `soft` cable keeps to curves of 3 cm radius, the `usual` one of 5 cm, a
+            `stiff` one of 8 cm.
+        connector_mass_kg: Of the plug at each end.
+        friction_table: Coulomb coefficient of cable on cloth.
+    """
+
+    stiffness: Stiffness = "usual"
+    connector_mass_kg: Annotated[float, Field(ge=0.0, le=0.1)] = 0.004
+    friction_table: Annotated[float, Field(ge=0.0, le=2.0)] = 0.4
+
+
+class LayoutConfig(_Document):
+    """Where the robot stands, behind the long side of the table; `cellwright doctor` judges it.
+
+    Attributes:
+        robot_y_m: Of the body's frame, from the table's centre.
+        body_z_m: Of the body's frame, from the table's surface; the feet are 0.10 m lower.
+    """
+
+    robot_y_m: Annotated[float, Field(ge=-1.5, le=-0.36)] = -0.425
+    body_z_m: Annotated[float, Field(ge=-0.4, le=0.4)] = -0.10
+
+
 class TableCellConfig(_Document):
     """The cell itself."""
 
     camera: CameraConfig = CameraConfig()
+    cable: CableConfig = CableConfig()
+    layout: LayoutConfig = LayoutConfig()
     physics: PhysicsConfig = PhysicsConfig()
 
 

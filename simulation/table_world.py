@@ -8,8 +8,9 @@ from numpy.typing import NDArray
 from robots.descriptions import DESCRIPTIONS
 from robots.interfaces import ARMS
 from robots.limits import yumi_limits
-from robots.placement import HOME_RAD
+from robots.placement import HOME_RAD, YUMI_AT_TABLE, Placement
 from simulation.arms_driver import DriverState, SimArmsDriver
+from simulation.cable.parameters import RodParameters
 from simulation.cable.rod import Rod
 from simulation.cable.rod_state import RodState
 from simulation.cable_obstacles import CableObstacles
@@ -53,12 +54,25 @@ class TableWorld:
         steps: Steps taken since the world began.
     """
 
-    def __init__(self, nodes_m: Floats, step_hz: int) -> None:
-        """Put the robot, at home, before a table with a cable at rest along `nodes_m`."""
+    def __init__(
+        self,
+        nodes_m: Floats,
+        step_hz: int,
+        placement: Placement = YUMI_AT_TABLE,
+        parameters: RodParameters | None = None,
+    ) -> None:
+        """Put the robot, at home, before a table with a cable at rest along `nodes_m`.
+
+        Args:
+            nodes_m: Centre line of the cable, shape (N, 3).
+            step_hz: Steps a second.
+            placement: Where the robot stands.
+            parameters: What the cable is made of.
+        """
         self.step_s = 1.0 / step_hz
-        self.rod = Rod(nodes_m)
+        self.rod = Rod(nodes_m, parameters)
         self.robot = DESCRIPTIONS["yumi"]()
-        self.body = YumiBody(HOME_RAD, dict.fromkeys(ARMS, OPEN_M), self.step_s)
+        self.body = YumiBody(HOME_RAD, dict.fromkeys(ARMS, OPEN_M), self.step_s, placement)
         self._obstacles = CableObstacles.of(self.robot)
         self._obstacles.follow(self.body, self.rod)
         self.driver = SimArmsDriver(self.body, self.rod, self.now_s, yumi_limits())

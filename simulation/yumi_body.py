@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from robots.descriptions import urdf_path
 from robots.descriptions.yumi import arm_joint_names, finger_joint_names
 from robots.interfaces import ARMS, Arm
-from robots.placement import YUMI_AT_TABLE, table_top
+from robots.placement import YUMI_AT_TABLE, Placement, table_top
 from simulation.bullet import import_pybullet
 
 Floats = NDArray[np.float64]
@@ -33,7 +33,11 @@ class YumiBody:
     """
 
     def __init__(
-        self, positions_rad: Floats, openings_m: Mapping[Arm, float], step_s: float
+        self,
+        positions_rad: Floats,
+        openings_m: Mapping[Arm, float],
+        step_s: float,
+        placement: Placement = YUMI_AT_TABLE,
     ) -> None:
         """Put the robot at the table.
 
@@ -41,7 +45,9 @@ class YumiBody:
             positions_rad: Of both arms' joints, shape (14,), left arm first.
             openings_m: Of the grippers.
             step_s: Length of a step.
+            placement: Where the robot stands.
         """
+        self._placement = placement
         self._bullet = import_pybullet()
         self._server = self._bullet.connect(self._bullet.DIRECT)
         self._bullet.setTimeStep(step_s, physicsClientId=self._server)
@@ -110,7 +116,7 @@ class YumiBody:
             physicsClientId=self._server,
         )
         poses = {name: (*state[4], *state[5]) for name, state in zip(moving, states, strict=True)}
-        poses[_ROOT] = (*YUMI_AT_TABLE.position_m, *_root_quat_xyzw())
+        poses[_ROOT] = (*self._placement.position_m, *self._root_quat_xyzw())
         table = np.array([poses[name] for name in names])
         return table[:, :3], table[:, 3:]
 
@@ -132,14 +138,18 @@ class YumiBody:
     def _add_robot(self) -> int:
         robot: int = self._bullet.loadURDF(
             str(urdf_path("yumi")),
-            YUMI_AT_TABLE.position_m,
-            _root_quat_xyzw(),
+            self._placement.position_m,
+            self._root_quat_xyzw(),
             useFixedBase=True,
             physicsClientId=self._server,
         )
         for link in range(-1, self._bullet.getNumJoints(robot, physicsClientId=self._server)):
             self._let_touch(robot, link, _ROBOT_GROUP, _TABLE_GROUP)
         return robot
+
+    def _root_quat_xyzw(self) -> tuple[float, float, float, float]:
+        half = 0.5 * self._placement.yaw_rad
+        return 0.0, 0.0, math.sin(half), math.cos(half)
 
     def _let_touch(self, body: int, link: int, group: int, others: int) -> None:
         self._bullet.setCollisionFilterGroupMask(
@@ -170,8 +180,3 @@ class YumiBody:
 def _finger_positions(openings_m: Mapping[Arm, float]) -> list[float]:
     """Return the positions of the two fingers of each hand; each makes half of the opening."""
     return [0.5 * openings_m[arm] for arm in ARMS for _ in finger_joint_names(arm)]
-
-
-def _root_quat_xyzw() -> tuple[float, float, float, float]:
-    half = 0.5 * YUMI_AT_TABLE.yaw_rad
-    return 0.0, 0.0, math.sin(half), math.cos(half)

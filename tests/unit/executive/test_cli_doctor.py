@@ -1,10 +1,15 @@
 """`cellwright doctor` tries everything, says what is broken, and how to mend it."""
 
+import numpy as np
 import pytest
+from PIL import Image
 from typer.testing import CliRunner
 
 from executive.cli import cmd_doctor, main
 from executive.cli.doctor_checks import CHECKS, Check, CheckError
+from robots import layout
+from robots.interfaces import ARMS
+from robots.reach import ReachMap
 
 
 def broken():
@@ -54,3 +59,43 @@ def test_a_warning_breaks_nothing(monkeypatch):
 def test_every_library_passes_its_own_check(check, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     assert check.attempt()
+
+
+@pytest.fixture
+def quick_reach(monkeypatch):
+    """Let both arms reach everything, without measuring it."""
+
+    def reach_map(_scene, x_m, y_m, **_):
+        return ReachMap(x_m, y_m, dict.fromkeys(ARMS, np.ones((len(y_m), len(x_m)))))
+
+    monkeypatch.setattr(layout, "reach_map", reach_map)
+
+
+def test_a_cell_is_judged_and_drawn(quick_reach, tmp_path):
+    picture = tmp_path / "reach.png"
+    result = CliRunner().invoke(main.app, ["doctor", "yumi_table", "--picture", str(picture)])
+    assert result.exit_code == 0
+    assert "within reach of left 100 %" in result.stdout
+    assert "BBBB" in result.stdout
+    with Image.open(picture) as image:
+        assert image.format == "PNG"
+
+
+def test_a_cell_whose_robot_stands_in_its_table_exits_with_3(quick_reach, tmp_path):
+    cell = tmp_path / "sunken.yaml"
+    layout_of = "config: {layout: {robot_y_m: -0.36, body_z_m: -0.3}}"
+    cell.write_text(f"format: 1\ncell: sunken\nworld: table_cell\n{layout_of}\n")
+    picture = str(tmp_path / "reach.png")
+    result = CliRunner().invoke(main.app, ["doctor", str(cell), "--picture", picture])
+    assert result.exit_code == 3
+    assert "at home, " in result.stdout
+
+
+@pytest.mark.parametrize(
+    ("cell", "message"),
+    [("yumi_tabel", "did you mean 'yumi_table'"), ("dry", "expected a cell of world table_cell")],
+)
+def test_a_cell_that_cannot_be_judged_is_refused(cell, message):
+    result = CliRunner().invoke(main.app, ["doctor", cell])
+    assert result.exit_code != 0
+    assert message in str(result.exception)
