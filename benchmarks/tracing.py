@@ -3,7 +3,9 @@
 Tiers are drawn, see `benchmarks.dropped_cables`. A trace starts at a cable's free end; all
 three adapters are known. It is right when it follows its cable all the way to its adapter; as in
 the thesis, a scene counts when two of three images of it are traced right. Beliefs are held to
-first images, and to cables of 3 m by themselves, which times are measured on as well.
+first images, and to cables of 3 m by themselves, which times are measured on as well: of tracing
+from a known end, of a step, and of all that perception does with an image of which nothing is
+known (`image_s`), also over what takes no network (`image_over_classic`).
 Photographs count where they are at hand, see `benchmarks.photographs`.
 """
 
@@ -14,7 +16,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from benchmarks.harness import Row, mean, median, share
+from benchmarks.harness import Row, mean, median, percentile_95, share
 from benchmarks.photographs import annotated_traces, followed, labelled_images, told_apart
 from benchmarks.tracing_tasks import (
     TIERS,
@@ -25,6 +27,7 @@ from benchmarks.tracing_tasks import (
     most_are_right,
     traced,
 )
+from executive.app.compose import cable_vision
 from perception.cable import parts
 from perception.cable.interfaces import Tracer
 from perception.cable.tracers.analytic import AnalyticTracer
@@ -32,6 +35,7 @@ from perception.cable.tracers.learned import LearnedTracer
 from perception.cable.tracers.skeleton import SkeletonTracer, SkeletonTracerConfig
 from perception.cable.tracers.transitions import ThreadingConfig
 from perception.cable.types import Trace
+from perception.cable.vision import GreyImageVision
 from perception.models.store import FOLDER
 from perception.training.calibration import expected_calibration_error, selective_error
 
@@ -43,7 +47,7 @@ TRACERS: dict[str, Callable[[], Tracer]] = {
     "_analytic": AnalyticTracer,
     "_least_bending": lambda: SkeletonTracer(EACH_BY_ITSELF),
 }
-SCENES, SINGLES = 30, 60
+SCENES, SINGLES = 30, 40
 QUICK_SCENES, QUICK_SINGLES = 3, 4
 
 
@@ -53,7 +57,7 @@ def run(quick: bool, seed: int) -> Sequence[Row]:
     singles = [draw_single(seed, k) for k in range(QUICK_SINGLES if quick else SINGLES)]
     single_rows, single_believed = _singles(singles)
     rng = np.random.default_rng(seed)
-    rows += single_rows
+    rows += single_rows + _whole_images(singles)
     rows += _calibration("", [*believed, *single_believed], rng)
     rows += _calibration("_tiers", believed, rng) + _calibration("_single", single_believed, rng)
     return rows if quick else rows + _photographs()
@@ -95,6 +99,22 @@ def _singles(tasks: Sequence[Task]) -> tuple[list[Row], list[tuple[float, bool]]
         median("step_ms", steps, "ms", "<= 4"),
         median("trace_over_skeleton", over, "1"),
     ], believed
+
+
+def _whole_images(tasks: Sequence[Task]) -> list[Row]:
+    """Return how long all of perception takes on images of single cables, with no end known."""
+    ours, classic = cable_vision(), GreyImageVision()
+    for warm in (ours, classic):
+        warm.scene(tasks[0].scene.image)
+    seconds = [
+        [vision.scene(task.scene.image).seconds for task in tasks] for vision in (ours, classic)
+    ]
+    over = [mine / other for mine, other in zip(*seconds, strict=True)]
+    return [
+        median("image_s", seconds[0], "s", "<= 1"),
+        percentile_95("image_s_p95", seconds[0], "s"),
+        median("image_over_classic", over, "1"),
+    ]
 
 
 def _timed(tracer: Tracer, task: Task) -> tuple[Trace | None, float]:

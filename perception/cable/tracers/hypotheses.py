@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial.distance import cdist
 
 from perception.cable.tracers.paths import Detour, Path
 from perception.cable.tracers.starts import from_start
@@ -189,7 +190,7 @@ def same(a: Hypothesis, b: Hypothesis) -> bool:
 
 def apart(a: Floats, b: Floats) -> Floats:
     """Return how far points of two lines are apart, more where directions differ, (N, M)."""
-    gaps = np.linalg.norm(a[:, None] - b[None], axis=2)
+    gaps = cdist(a, b)
     turned: Floats = gaps + TURNED * (1.0 - _headings(a) @ _headings(b).T)
     return turned
 

@@ -7,7 +7,7 @@ often as they say.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path as FilePath
 
@@ -38,8 +38,8 @@ from perception.models.tracer_crop import WIDTH
 FILE = "posterior.json"
 # A start with no more points than this at a known end tells nothing more than that end.
 MOST_AT_END = 2
-# Widths that are tried, too, as shares of the seen one, where a trace is lost.
-OTHER_WIDTHS = (1.5, 0.7)
+# Widths that are tried, too, as shares of the seen one, where a trace is lost; so many looks each.
+OTHER_WIDTHS, OTHER_LOOKS = (1.5, 0.7), 120
 
 
 class Weights(BaseModel):
@@ -109,6 +109,8 @@ class PosteriorTracer:
         self._weights = read_weights(folder / FILE)
         self._model = StepModel(folder)
         self._observe, self._config = observe, config or SearchConfig()
+        looks = min(self._config.most_looks, OTHER_LOOKS)
+        self._briefly = replace(self._config, most_looks=looks)
         # Traces from all ends of one image come from one survey.
         self._surveyed = lru_cache(maxsize=4)(self._survey_ends)
 
@@ -139,7 +141,8 @@ class PosteriorTracer:
         first = self._asked(image, start_px, endpoints, view)
         if not _is_doubtful(first):
             return first
-        again = [self._asked(image, start_px, endpoints, view.wider(by)) for by in OTHER_WIDTHS]
+        other = [view.wider(by) for by in OTHER_WIDTHS]
+        again = [self._asked_again(image, start_px, endpoints, each) for each in other]
         return max([first, *again], key=_best_belief)
 
     def judged(self, image: GreyImage, endpoints: Sequence[Endpoint]) -> tuple[Endpoint, ...]:
@@ -164,17 +167,22 @@ class PosteriorTracer:
     ) -> TracePosterior:
         number = _end_at(start_px, endpoints, view.width_px)
         if number is not None:
-            found = self._surveyed(image.tobytes(), image.shape, tuple(endpoints), view.scale)
+            found = self._surveyed(image.tobytes(), image.shape, tuple(endpoints))
             return posterior_of(found, number, self._weights) if found else NOTHING
         found = survey(self._model, self._config, image, view, [start_px], endpoints)
         return posterior_of(found, 0, self._weights)
 
+    def _asked_again(
+        self, image: GreyImage, start_px: Points, endpoints: Sequence[Endpoint], view: View
+    ) -> TracePosterior:
+        """Follow the cable from its start alone."""
+        number = _end_at(start_px, endpoints, view.width_px)
+        start = start_px if number is None else endpoints[number].position_px[None]
+        found = survey(self._model, self._briefly, image, view, [start], endpoints, from_all=False)
+        return posterior_of(found, 0, self._weights)
+
     def _survey_ends(
-        self,
-        pixels: bytes,
-        shape: tuple[int, int],
-        endpoints: tuple[Endpoint, ...],
-        scale: float,
+        self, pixels: bytes, shape: tuple[int, int], endpoints: tuple[Endpoint, ...]
     ) -> Survey | None:
         """Follow cables from all ends; endpoints are told apart by being the same objects."""
         image = np.frombuffer(pixels, dtype=np.uint8).reshape(shape)
@@ -182,7 +190,7 @@ class PosteriorTracer:
         view = view_at(self._observe, image, starts[0])
         if view is None:
             return None
-        return survey(self._model, self._config, image, view.wider(scale), starts, endpoints)
+        return survey(self._model, self._config, image, view, starts, endpoints)
 
 
 def view_at(observe: Observe | None, image: GreyImage, start_px: Points | None) -> View | None:

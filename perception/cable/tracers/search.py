@@ -46,7 +46,7 @@ class SearchConfig:
     end_odds: float = 0.15
     dead_end: float = 0.06
     window: float = 4.5
-    most_looks: int = 400
+    most_looks: int = 250
     leaps: bool = True
     rivals: RivalConfig = field(default_factory=RivalConfig)
 
@@ -111,7 +111,7 @@ class Search:
         config = self._config
         found = find_modes(outlook.cells, config.least, config.modes)
         modes = [mode for mode in found if mode.point_crop[0] > HERE[0] - BACK]
-        is_dead = self._sketch is not None and self._sketch.dead_ends.reached(path) is not None
+        is_dead = self._is_at_dead_end(path)
         end = config.end_odds * outlook.end
         if is_dead:
             end = max(outlook.end, config.dead_end)
@@ -126,7 +126,7 @@ class Search:
         ]
         if config.leaps and len(modes) == 1:
             for point in leap(outlook, modes[0]):
-                if ways[0].end is None:
+                if ways[0].end is None and not self._is_at_dead_end(ways[0]):
                     ways[0] = self._checked(image, ways[0].extended(outlook.frame.back(point), 1.0))
         if end > config.least:
             ways.append(path.ended(TraceEnd.ENDPOINT, end / total))
@@ -134,6 +134,9 @@ class Search:
             why = TraceEnd.ENDPOINT if is_dead else TraceEnd.LOST
             ways.append(path.ended(why, config.lost))
         return ways
+
+    def _is_at_dead_end(self, path: Path) -> bool:
+        return self._sketch is not None and self._sketch.dead_ends.reached(path) is not None
 
     def _run_on(self, image: ScaledImage, path: Path) -> Path:
         """Return the path up to the end of the stretch that it has come to."""

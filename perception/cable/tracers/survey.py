@@ -39,14 +39,12 @@ class View:
     Attributes:
         width_px: Width of the cables.
         cable: Which pixels show cable or connector, shape (height, width).
-        scale: That width over the one that was measured.
         stretches: Pieces of cable that lie alone, shape (N, 2) each.
         dead_ends: Where the mask of a cable ends; many of these are no ends of a cable.
     """
 
     width_px: float
     cable: Bools
-    scale: float = 1.0
     stretches: tuple[Points, ...] = ()
     dead_ends: tuple[Endpoint, ...] = ()
 
@@ -56,7 +54,7 @@ class View:
 
     def wider(self, by: float) -> "View":
         """Return the same with cables so many times as wide."""
-        return replace(self, width_px=by * self.width_px, scale=by * self.scale)
+        return replace(self, width_px=by * self.width_px)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -95,6 +93,7 @@ def survey(
     view: View,
     starts_px: Sequence[Points],
     endpoints: Sequence[Endpoint],
+    from_all: bool = True,
 ) -> Survey:
     """Follow cables from starts, and from all other ends.
 
@@ -105,6 +104,7 @@ def survey(
         view: What is known of it.
         starts_px: First points of cables, in order, shape (N, 2) each.
         endpoints: Ends of cables; those at starts are left out.
+        from_all: Whether cables are followed from other ends than the starts, too.
     """
     scaled = scale_image(image, view.width_px, WIDTH, model.zoom)
     near = OWN_END_WIDTHS * view.width_px
@@ -117,7 +117,8 @@ def survey(
     paths = [first_paths(start, endpoints, scaled) for start in starts_px]
     begun = [_as_end(start, own, scaled) for start, own in zip(starts_px, paths, strict=True)]
     ends = Ends.of([*begun, *far], scaled)
-    paths += [first_paths(end.position_px[None], [end], scaled) for end in far]
+    if from_all:
+        paths += [first_paths(end.position_px[None], [end], scaled) for end in far]
     sketch = view.sketch(scaled)
     searches = [
         Search(own, ends.without(ends.points[number], OWN_END_WIDTHS * WIDTH), config, sketch)

@@ -46,7 +46,8 @@ def walked_ends(
 
 
 def _has_ended(path: Path) -> bool:
-    return path.end is TraceEnd.ENDPOINT and len(path.points) > LEAD
+    """Say whether a path came to where nothing goes on; whether that is an end is seen there."""
+    return path.end in {TraceEnd.ENDPOINT, TraceEnd.LOST} and len(path.points) > LEAD
 
 
 def _end_of(points: Floats, path: Path, scaled: ScaledImage) -> Endpoint:
