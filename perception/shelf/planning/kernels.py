@@ -20,11 +20,11 @@ Ints = NDArray[np.int64]
 kernel = numba.njit(cache=True, error_model="numpy")
 
 TOUCH_M = 1e-6
-# Room for less than this share of its width is little to an object that is to be pushed aside.
-ROOMY = 0.7
-LITTLE_M = 0.02
-# How many moves it takes to get an object out of the way: it moves well, a little, not at all.
-MOVES_WELL, MOVES_A_LITTLE, STUCK = 1.0, 1.6, 2.4
+# An object moves well that has room for this share of its width.
+ROOMY = 1.0
+# How many moves it takes to get an object out of the way: it moves well, or not at all; and the
+# share of the same of what stops it.
+MOVES_WELL, STUCK, STOPPED = 1.0, 2.4, 0.25
 NO_DEPTH = np.inf
 # Fields of `reach`: thickness of the blade, its overlap, what stays between, whether it has a cup.
 BLADE, OVERLAP, GAP, SUCTION = 0, 1, 2, 3
@@ -224,25 +224,49 @@ def moves_from(
 
 
 @kernel
+def _stopper(boxes: Floats, index: int, sign: int, room: float, gap: float) -> int:
+    """Return which object stops a push, -1 for the wall or what was met."""
+    own = boxes[index]
+    for other in range(len(boxes)):
+        if other != index and _ahead(own, boxes[other], sign, gap, np.inf) <= room + TOUCH_M:
+            return other
+    return -1
+
+
+@kernel
 def _effort(boxes: Floats, movable: Ints, met: Floats, width_m: float, reach: Floats) -> Floats:
-    """Return how many moves it takes to get each object out of the way, roughly."""
-    effort = np.full(len(boxes), STUCK)
-    for index in range(len(boxes)):
+    """Return how many moves it takes to get each object out of the way, roughly.
+
+    It falls with the room that an object has, and a little with the room of what stops it: where
+    no few moves show anything, those are better that make room.
+    """
+    count = len(boxes)
+    shares, stoppers = np.full((count, 2), -1.0), np.full((count, 2), -1)
+    effort = np.full(count, STUCK)
+    for index in range(count):
         own = boxes[index]
         lifted = movable[index] in (1, 3) and reach[SUCTION] > 0.0
         if lifted and _front_free(boxes, index, met, own[0], own[2], own[1]):
             effort[index] = MOVES_WELL
-            continue
-        if movable[index] in (1, 2):
-            for sign in (-1, 1):
-                if not _blade_fits(boxes, index, sign, met, width_m, reach):
-                    continue
-                room = _room(boxes, index, sign, met, width_m, reach)
-                if room >= ROOMY * (own[2] - own[0]):
-                    effort[index] = MOVES_WELL
-                elif room >= LITTLE_M:
-                    effort[index] = min(effort[index], MOVES_A_LITTLE)
-    return effort
+        elif movable[index] in (1, 2):
+            for side in range(2):
+                sign = 2 * side - 1
+                if _blade_fits(boxes, index, sign, met, width_m, reach):
+                    room = _room(boxes, index, sign, met, width_m, reach)
+                    share = min(1.0, room / (ROOMY * (own[2] - own[0])))
+                    shares[index, side] = share
+                    stoppers[index, side] = _stopper(boxes, index, sign, room, reach[GAP])
+                    effort[index] = min(effort[index], STUCK - (STUCK - MOVES_WELL) * share)
+    whole = effort.copy()
+    for index in range(count):
+        if effort[index] > MOVES_WELL:
+            least = STUCK
+            for side in range(2):
+                stopper = stoppers[index, side]
+                if shares[index, side] >= 0.0 and stopper >= 0:
+                    least = min(least, effort[stopper])
+            whole[index] += STOPPED * (least - MOVES_WELL)
+    return whole
 
 
 @kernel
