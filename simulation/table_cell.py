@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from executive.core.world import StreamMessage
+from robots.interfaces import ArmsDriver
 from simulation.arms_driver import SimArmsDriver
 from simulation.cable.configuration_file import configuration_from_file
 from simulation.cable.configurations import starting_configuration
@@ -26,6 +27,7 @@ from simulation.table_cell_config import (
 )
 from simulation.table_setup import planning_scene, rod_parameters
 from simulation.table_world import TableWorld
+from simulation.unreliable_arms import ArmFaults, UnreliableArms
 
 Floats = NDArray[np.float64]
 
@@ -36,6 +38,7 @@ class TableCell:
     Attributes:
         clock: The world's time; waiting on it lets the physics go on.
         driver: Controllers of both arms.
+        commanded: The same as missions command them: with what goes wrong.
         camera: Looks straight down on the table.
         scene: Where the robot stands, and what it must not touch; for the planner.
         devices: Clock, driver and camera, by name.
@@ -55,8 +58,9 @@ class TableCell:
             InputError: A key or value is not known, or the cable's file cannot be used.
         """
         settings = read_settings(TableCellConfig, config, "cell config")
-        cable = read_settings(TableScenario, scenario, "scenario").cable
-        cable_seed, camera_seed, faults_seed = np.random.SeedSequence(seed).spawn(3)
+        found = read_settings(TableScenario, scenario, "scenario")
+        cable, faults = found.cable, ArmFaults(**found.arms.model_dump())
+        cable_seed, camera_seed, faults_seed, arms_seed = np.random.SeedSequence(seed).spawn(4)
         parameters = rod_parameters(settings.cable)
         nodes_m = _lay_cable(cable, np.random.default_rng(cable_seed), parameters)
         self.scene = planning_scene(settings.layout)
@@ -64,6 +68,10 @@ class TableCell:
             nodes_m, settings.physics.step_hz, self.scene.placement, parameters
         )
         self.driver: SimArmsDriver = self._world.driver
+        self.commanded: ArmsDriver = self.driver
+        if faults.any():
+            arms_rng = np.random.default_rng(arms_seed)
+            self.commanded = UnreliableArms(self.driver, faults, arms_rng)
         self.camera = OverheadCamera(
             self._world,
             settings.camera,
@@ -78,7 +86,7 @@ class TableCell:
         self.devices: Mapping[str, object] = {
             "clock": self.clock,
             "camera": self.camera,
-            "driver": self.driver,
+            "driver": self.commanded,
         }
         rates = settings.physics
         self._joint_states = Stream("/joint_states", "JointStates", rates.joint_states_hz)

@@ -10,7 +10,6 @@ from executive.core.errors import InputError
 from executive.core.registry import closest
 from simulation.cable.knot_names import KnotName, TierName
 
-
 Stiffness = Literal["soft", "usual", "stiff"]
 
 
@@ -44,10 +43,25 @@ class CableScenario(_Document):
         return self
 
 
+class ArmsScenario(_Document):
+    """What goes wrong with the arms; the seed decides when.
+
+    Attributes:
+        miss_rate: Share of closings at which the fingers take nothing, and stay open.
+        slip_rate: Share of grasps out of which the cable slips some seconds later.
+        stop_rate: Share of motions that end on the way, as at a protective stop.
+    """
+
+    miss_rate: Annotated[float, Field(ge=0.0, le=1.0)] = 0.0
+    slip_rate: Annotated[float, Field(ge=0.0, le=1.0)] = 0.0
+    stop_rate: Annotated[float, Field(ge=0.0, le=1.0)] = 0.0
+
+
 class TableScenario(_Document):
     """What a mission finds in the cell."""
 
     cable: CableScenario = CableScenario()
+    arms: ArmsScenario = ArmsScenario()
 
 
 class CameraConfig(_Document):

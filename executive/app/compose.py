@@ -107,7 +107,7 @@ def _open_table_cell(document: CellDocument, scenario: Mapping[str, object], see
 
     world = TableCell(document.config, scenario, seed)
     services = {
-        "arms": PlannedDualArm(world.driver, seed=seed, scene=world.scene),
+        "arms": PlannedDualArm(world.commanded, seed=seed, scene=world.scene),
         "vision": selectable_vision(
             partial(cable_vision, ROWS_OF_ARMS_AT_HOME), ROWS_OF_ARMS_AT_HOME
         ),

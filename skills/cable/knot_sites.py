@@ -25,6 +25,8 @@ REACH_X_M = 0.38
 REACH_Y_M = (-0.20, 0.17)
 # Only weighs arc lengths against crowding; the real length may differ.
 CABLE_LENGTH_M = 3.0
+# A cage farther inside a knot than this would draw the knot, and not its tail.
+DEEPEST_CAGE_M = 0.35
 # Beyond the places that are given for a knot others are tried along so much of the trace.
 WALK_ARC = 0.15
 
@@ -56,9 +58,12 @@ def deeper_pairs(
         inside = (visits > knot.interval[0]) & (visits < knot.interval[1])
         crowding = sum(max(0.0, 1.0 - site.room_px / SIDE_ROOM_PX) for site in pair)
         between_m = (pair[1].arc - pair[0].arc) * CABLE_LENGTH_M
-        return float((outside & inside).sum()) + between_m + 0.4 * crowding
+        inwards_m = (pair[0].arc - knot.interval[0]) * CABLE_LENGTH_M
+        return float((outside & inside).sum()) + between_m + 2.0 * inwards_m + 0.4 * crowding
 
-    return [pair for pair in _roomy(sites, sites, frame, cost) if pair[0].arc < pair[1].arc]
+    deepest = knot.interval[0] + DEEPEST_CAGE_M / CABLE_LENGTH_M
+    cages = [site for site in sites if site.arc <= deepest]
+    return [pair for pair in _roomy(cages, sites, frame, cost) if pair[0].arc < pair[1].arc]
 
 
 def ranked_pairs(

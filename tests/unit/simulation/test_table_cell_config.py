@@ -20,7 +20,7 @@ def test_a_scenario_names_the_knot_or_the_file():
 @pytest.mark.parametrize(
     ("values", "message"),
     [
-        ({"cabel": {}}, "scenario: cabel: unknown key; did you mean 'cable'? (known: cable)"),
+        ({"cabel": {}}, "scenario: cabel: unknown key; did you mean 'cable'? (known: arms, cable)"),
         (
             {"cable": {"knots": "none"}},
             "scenario: cable.knots: unknown key; did you mean 'knot'? "
@@ -30,6 +30,11 @@ def test_a_scenario_names_the_knot_or_the_file():
             {"cable": {"knot": "granny"}},
             "scenario: cable.knot: got 'granny'; expected 'none', 'overhand', "
             "'figure_8', 'overhand_honda', 'bowline', 'linked_overhand' or 'figure_8_honda'",
+        ),
+        (
+            {"arms": {"mis_rate": 0.1}},
+            "scenario: arms.mis_rate: unknown key; did you mean 'miss_rate'? "
+            "(known: miss_rate, slip_rate, stop_rate)",
         ),
         (
             {"cable": {"tier": "c1"}},

@@ -129,7 +129,7 @@ class Flown:
     claim: CableClaim
 
 
-def flown(*looks, arms=None, **inputs):
+def flown(*looks, arms=None, camera=None, **inputs):
     """Run the mission over scripted looks; return outcome, claim and what the arms did."""
     mission = load_mission(str(MISSION), skills=skills(), types=port_types())
     script, cell = ScriptedVision(*looks), Cell()
@@ -140,7 +140,7 @@ def flown(*looks, arms=None, **inputs):
     devices = {
         "arms": arms or ArrivingArms(),
         "vision": vision,
-        "camera": type("Camera", (), {"capture": staticmethod(frame)})(),
+        "camera": camera or type("Camera", (), {"capture": staticmethod(frame)})(),
         "worker": InlineWorker(),
         "rng": np.random.default_rng(0),
     }
@@ -209,3 +209,31 @@ def test_a_vision_that_cannot_be_had_ends_the_round_with_its_reason():
     with pytest.raises(InputError, match="unknown vision 'tsk'; did you mean 'tusk'"):
         vision.select("tsk")
     assert vision.selected == "classic"
+
+
+def test_hands_that_close_on_nothing_cost_rounds_and_not_the_mission():
+    class Missing(ArrivingArms):
+        """Arms whose first six closings take nothing."""
+
+        def holds(self, arm):
+            closings = [entry for entry in self.log if entry[0] == "grip" and entry[2] != "open"]
+            return len(closings) > 6
+
+    result, acts, _ = flown(KNOTTED, KNOTTED, KNOTTED, KNOTTED, DONE, arms=Missing())
+    assert result.outcome is MissionOutcome.SUCCESS
+    assert result.claim.untangled
+    assert "dilate_knot" in acts
+
+
+def test_a_dark_frame_costs_a_round():
+    looks = iter([np.zeros((751, 1001), dtype=np.uint8)])
+
+    class Flickering:
+        """A camera whose first frame is black."""
+
+        def capture(self):
+            image = next(looks, None)
+            return frame() if image is None else replace(frame(), image=image)
+
+    result, acts, _ = flown(DONE, camera=Flickering())
+    assert (result.outcome, acts) == (MissionOutcome.SUCCESS, [])
