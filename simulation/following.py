@@ -107,6 +107,11 @@ class Follower:
         """Stop as fast as the brakes allow, for good."""
         with self._lock:
             self.latched = True
+            self.brake()
+
+    def brake(self) -> None:
+        """Stop as fast as the brakes allow; other motions may follow."""
+        with self._lock:
             if self._mode in ("motion", "stop"):
                 limits = replace(
                     self._limits,

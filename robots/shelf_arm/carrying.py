@@ -94,7 +94,7 @@ def bring_out(motions: ShelfMotions, thing: Cuboid) -> Step:
     if out_m <= 0.0:
         return
     way = np.array([0.0, -out_m, 0.0])
-    yield from carry(motions, way, settings.entry_force_n)
+    yield from carry(motions, way, settings.caught_force_n)
     if driver.tripped():
         yield from set_down(motions)
         at_m = motions.tip_m()[1]
@@ -159,7 +159,7 @@ def carry(
 
 def _touch(motions: ShelfMotions, touch: Floats) -> Step:
     settings, driver = motions.settings, motions.driver
-    for _ in motions.line_by(touch, settings.touch_speed_m_s, settings.entry_force_n):
+    for _ in motions.line_by(touch, settings.touch_speed_m_s, settings.touch_force_n):
         if driver.holds():
             driver.stop()
         yield

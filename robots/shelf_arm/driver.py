@@ -26,8 +26,7 @@ class ShelfArmDriver(JointsDriver, Protocol):
     def guard(self, guard: Guard | None) -> None:
         """Watch the force from now on, or stop watching.
 
-        When it is too great, the joints rest where they are then, within their limits, and press
-        no further.
+        When it is too great, the brakes stop the joints, and they press no further.
         """
         ...
 

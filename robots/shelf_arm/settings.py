@@ -17,7 +17,10 @@ class ShelfArmSettings:
         carry_speed_m_s: Of what is carried.
         lower_speed_m_s: Of what is lowered to the floor.
         floor_force_n: More force than this from below is the floor.
-        entry_force_n: More force than this on the way in means that something is in the way.
+        entry_force_n: More force than this on the way in means that something is in the way; a
+            light box slides before a greater one is felt.
+        touch_force_n: The cups press on a face no harder.
+        caught_force_n: More force than this on the way out means that what is carried is caught.
         wedge_force_n: No push is harder.
         rise_n: What a pushed object meets when the force rises by that much, and
         rise_share: by that share of what it took to slide.
@@ -33,12 +36,14 @@ class ShelfArmSettings:
     push_height_m: float = 0.042
     cup_height_m: float = 0.042
     push_speed_m_s: float = 0.06
-    entry_speed_m_s: float = 0.15
+    entry_speed_m_s: float = 0.12
     touch_speed_m_s: float = 0.04
     carry_speed_m_s: float = 0.15
     lower_speed_m_s: float = 0.02
     floor_force_n: float = 1.0
-    entry_force_n: float = 2.0
+    entry_force_n: float = 0.25
+    touch_force_n: float = 2.0
+    caught_force_n: float = 1.5
     wedge_force_n: float = 15.0
     rise_n: float = 0.4
     rise_share: float = 0.25

@@ -20,6 +20,7 @@ from robots.shelf_tool import (
     PutElsewhere,
     TakeOut,
     ToolAction,
+    ToolFailure,
     ToolResult,
     ToolShape,
 )
@@ -96,6 +97,8 @@ class ArmShelfTool:
             next(self._routine)
         except StopIteration as end:
             self._routine, self._result = None, end.value
+        except DeviceError as error:  # controllers that refuse end the action, not the cell
+            self._routine, self._result = None, ToolResult(ToolFailure.NO_PATH, str(error))
 
     def hold(self) -> None:
         """Bring the motion to rest on its own path, to be taken up again by `go_on`."""

@@ -68,7 +68,7 @@ class SimShelfArmDriver:
             against_n = -float(self.force_n() @ guard.direction)
             if against_n > guard.most_n:
                 self._tripped = True
-                self._follower.stop()
+                self._follower.brake()
         if self._tripped and self._follower.moving is False:
             # Joints that were stopped short of where they were to be would press on.
             self._follower.rest_at(self._physics.joint_state()[0])
@@ -138,8 +138,7 @@ class SimShelfArmDriver:
 
     def _outer_force_n(self) -> Floats:
         held = self._cups.held
-        force_n = self._physics.board_force_n()
-        for contact in self._physics.tool_contacts():
-            if contact.name != held:
-                force_n = force_n + contact.force_n
-        return force_n + self._physics.outer_force_n(held) if held else force_n
+        by_box_n = self._physics.forces_on_arm_n()
+        if held:
+            by_box_n[held] = self._physics.outer_force_n(held)
+        return np.sum([np.zeros(3), *by_box_n.values()], axis=0)

@@ -1,7 +1,6 @@
 """Shelf, boxes and arm in one physics server: rigid bodies with contact, friction and gravity."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -27,19 +26,6 @@ _SOLVER_ITERATIONS = 100
 # Faces rub over their whole area, contact points do not: without it boxes at rest turn slowly.
 _SPINNING_FRICTION_M = 0.002
 _STILL_M_S, _STILL_RAD_S = 1e-3, 1e-2
-
-
-@dataclass(frozen=True, slots=True)
-class Contact:
-    """A box that the tool touches.
-
-    Attributes:
-        name: Which one.
-        force_n: Force on the tool, world axes, shape (3,).
-    """
-
-    name: str
-    force_n: Floats
 
 
 class ShelfPhysics:
@@ -77,7 +63,8 @@ class ShelfPhysics:
         self._call("setGravity", 0.0, 0.0, -GRAVITY_M_S2)
         self._call("setPhysicsEngineParameter", numSolverIterations=_SOLVER_ITERATIONS)
         self.boards = scene.boxes
-        self._boards = [self._add_board(board) for board in scene.boxes]
+        for board in scene.boxes:
+            self._add_board(board)
         self._bodies = {box.name: self._add_box(box) for box in boxes}
         self._names = {body: name for name, body in self._bodies.items()}
         self.box_names = tuple(self._bodies)
@@ -156,19 +143,13 @@ class ShelfPhysics:
             energies.append(0.5 * mass_kg * float(np.square(linear).sum()))
         return sum(energies)
 
-    def tool_contacts(self) -> list[Contact]:
-        """Return what the tool's blade and cups, or any other link, touch of the boxes."""
-        touching: dict[str, Floats] = {}
+    def forces_on_arm_n(self) -> dict[str, Floats]:
+        """Return the force on the arm by each box that it touches, and by boards, named ''."""
+        forces: dict[str, Floats] = {}
         for contact in self._call("getContactPoints", bodyA=self._robot):
-            name = self._names.get(contact[2])
-            if name is not None:
-                touching[name] = touching.get(name, np.zeros(3)) + _force(contact)
-        return [Contact(name, force_n) for name, force_n in touching.items()]
-
-    def board_force_n(self) -> Floats:
-        """Return the force of the boards and the counter on the arm, shape (3,)."""
-        contacts = self._call("getContactPoints", bodyA=self._robot)
-        return _total([c for c in contacts if c[2] in self._boards])
+            name = self._names.get(contact[2], "")
+            forces[name] = forces.get(name, np.zeros(3)) + _force(contact)
+        return forces
 
     def outer_force_n(self, name: str) -> Floats:
         """Return the force on a box by all but the arm, gravity left out, shape (3,)."""
@@ -236,10 +217,9 @@ class ShelfPhysics:
         state = self._bullet.ACTIVATION_STATE_WAKE_UP
         self._call("changeDynamics", self._bodies[name], -1, activationState=state)
 
-    def _add_board(self, board: StaticBox) -> int:
+    def _add_board(self, board: StaticBox) -> None:
         body = self._add_body(board.size_m, 0.0, board.centre_m, _BOARD_GROUP)
         self._call("changeDynamics", body, -1, lateralFriction=_BOARD_FRICTION**0.5)
-        return body
 
     def _add_box(self, box: HeavyBox) -> int:
         centre_m = (box.box.x_m, box.box.y_m, 0.5 * box.box.size_m[2])
