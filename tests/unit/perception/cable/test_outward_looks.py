@@ -52,7 +52,18 @@ def test_what_is_judged_keeps_its_place_and_way(tracer):
     assert np.array_equal(judged.direction, _end(line, 0, 8).direction)
 
 
-def test_no_ends_or_no_cable_leave_nothing_to_judge(tracer):
+def test_where_no_end_is_seen_the_cable_is_followed_to_its_ends(tracer):
     image, line = _arc()
-    assert tracer.judged(image, []) == ()
+    found = tracer.judged(image, [])
+    assert len(found) == 2
+    for own, inwards in ((line[0], line[20]), (line[-1], line[-20])):
+        end = min(found, key=lambda end: np.linalg.norm(end.position_px - own))
+        assert np.linalg.norm(end.position_px - own) < 12.0
+        assert float(end.direction @ (inwards - own)) > 0.0
+        assert end.probability > 0.5
+
+
+def test_where_no_cable_is_there_is_nothing_to_judge(tracer):
+    image, line = _arc()
+    assert tracer.judged(np.full_like(image, 50), []) == ()
     assert tracer.judged(np.full_like(image, 50), [_end(line, 0, 8)])[0].probability <= 0.6
