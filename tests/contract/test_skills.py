@@ -8,7 +8,10 @@ from executive.app.catalogue import port_types, skills
 from executive.core.skill import PausePolicy, Skill, device_types, input_ports
 
 EVERY = [pytest.param(skills().get(name), id=name) for name in skills()]
-DEVICES = {"arms", "camera", "clock", "driver", "processes", "rng", "vision", "worker"}
+DEVICES = {
+    *("arms", "camera", "clock", "driver", "processes", "rng", "vision", "worker"),
+    *("detector", "search", "stock", "tool"),
+}
 
 
 @pytest.mark.parametrize("skill", EVERY)
@@ -46,6 +49,7 @@ CLAIMED_BY_DEVICE = {
     "arms": {"left_arm", "right_arm"},
     "driver": {"left_arm", "right_arm"},
     "camera": {"camera"},
+    "tool": {"tool"},
 }
 
 
