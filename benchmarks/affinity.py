@@ -2,7 +2,8 @@
 
 `A` is the thesis's figure: divergence in bits, diagonals kept, objects without a category on
 themselves. Where a matrix has no diagonal, an object gets as much weight on itself as on its best
-neighbour. `D` leaves out diagonals and objects that are alone in their category. The recipes were
+neighbour; `A own` keeps what the models themselves say of an object beside itself, as the thesis
+seems to. `D` leaves out diagonals and objects that are alone in their category. The recipes were
 fixed on the pharmacy; kitchen and office are asked the same way. Stored scores are used, so no
 model runs; `cellwright affinity build` asks the models anew.
 """
@@ -19,8 +20,8 @@ from perception.shelf.affinity_scoring import (
     neighbour_divergences,
     row_divergences,
 )
-from perception.shelf.language.comparing import EVEN, stored_matrices
-from perception.shelf.language.recipes import with_diagonal
+from perception.shelf.language.comparing import EVEN, stored_matrices, stored_ways
+from perception.shelf.language.recipes import rows_with_own_diagonal, with_diagonal
 from perception.shelf.language.stored import BEST_MODELS, DEFAULT_MODELS, stored_affinity
 from perception.shelf.types import Floats
 from simulation.shelf.taxonomy import Domain, shipped_domain, taxonomy_affinity
@@ -38,6 +39,9 @@ def run(quick: bool, seed: int) -> Sequence[Row]:  # noqa: ARG001 - there is no 
         truth = taxonomy_affinity(domain)
         for label, matrix in _matrices(domain):
             rows += _rows(f"{name}/{label}", matrix, truth)
+        for label, (parts, recipe) in stored_ways(name).items():
+            own = row_divergences(rows_with_own_diagonal(parts, recipe), truth)
+            rows.append(mean(f"A own {name}/{label}", own.tolist(), "bit"))
     return rows
 
 

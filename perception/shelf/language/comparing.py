@@ -11,7 +11,8 @@ from perception.shelf.affinity_scoring import (
     divergence_with_diagonal,
     nearest_in_category,
 )
-from perception.shelf.language.recipes import RECIPES, affinity_of, with_diagonal
+from perception.shelf.language.recipes import RECIPES, Recipe, affinity_of, with_diagonal
+from perception.shelf.language.scores import PairScores
 from perception.shelf.language.stored import stored_models, stored_scores
 from perception.shelf.types import Floats
 
@@ -77,15 +78,20 @@ def stored_agreements(names: tuple[str, ...], domain: str, truth: Floats) -> lis
 
 def stored_matrices(domain: str) -> list[tuple[str, AffinityMatrix]]:
     """Return what can be made of the stored scores of a domain, by `MODELS/RECIPE`."""
+    return [
+        (name, affinity_of(parts, recipe)) for name, (parts, recipe) in stored_ways(domain).items()
+    ]
+
+
+def stored_ways(domain: str) -> dict[str, tuple[list[PairScores], Recipe]]:
+    """Return which stored scores of a domain go together, and how, by `MODELS/RECIPE`."""
     scores = {model: stored_scores(domain, model) for model in stored_models().get(domain, ())}
     embedders = [model for model, part in scores.items() if part.kind == "cosine"]
-    asked = [model for model in scores if model not in embedders]
-    made = [(model, affinity_of([scores[model]], RECIPES["symmetric"])) for model in embedders]
-    for model in asked:
-        made += [
-            (f"{model}/{name}", affinity_of([scores[model]], RECIPES[name])) for name in RECIPES
-        ]
-        for other in embedders:
-            both = affinity_of([scores[model], scores[other]], RECIPES["symmetric"])
-            made.append((f"{model}+{other}", both))
-    return made
+    symmetric = RECIPES["symmetric"]
+    ways = {model: ([scores[model]], symmetric) for model in embedders}
+    for model in scores.keys() - {*embedders}:
+        ways |= {f"{model}/{name}": ([scores[model]], recipe) for name, recipe in RECIPES.items()}
+        ways |= {
+            f"{model}+{other}": ([scores[model], scores[other]], symmetric) for other in embedders
+        }
+    return dict(sorted(ways.items()))

@@ -14,6 +14,7 @@ that was fitted to one:
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from enum import Enum
 from types import MappingProxyType
 from typing import Final
 
@@ -26,6 +27,13 @@ from perception.shelf.language.scores import PairScores
 from perception.shelf.types import Floats
 
 COSINE_TEMPERATURE = 0.05
+
+
+class Diagonal(Enum):
+    """What becomes of scores of an object beside itself."""
+
+    NONE = "none"
+    OWN = "own"
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,8 +75,21 @@ def affinity_of(parts: Sequence[PairScores], recipe: Recipe) -> AffinityMatrix:
     names = parts[0].names
     if any(part.names != names for part in parts):
         raise InputError("affinity: got scores of different objects; expected the same ones")
-    logs = np.mean([_log_affinities(part, recipe) for part in parts], axis=0)
-    return AffinityMatrix(names, _exponential_rows(logs), _origin(parts, recipe))
+    rows = _rows(parts, recipe, Diagonal.NONE)
+    return AffinityMatrix(names, rows, _origin(parts, recipe))
+
+
+def rows_with_own_diagonal(parts: Sequence[PairScores], recipe: Recipe) -> Floats:
+    """Return affinities where models' scores of an object beside itself are kept, shape (N, N).
+
+    The thesis seems to have held such matrices against the taxonomy (section 7.1). They are for
+    that comparison alone: how a model repeats words says nothing of shelves.
+
+    Args:
+        parts: Scores of at least one model, in the same names.
+        recipe: What to do with them.
+    """
+    return _rows(parts, recipe, Diagonal.OWN)
 
 
 def with_diagonal(rows: Floats) -> Floats:
@@ -86,14 +107,22 @@ def with_diagonal(rows: Floats) -> Floats:
     return whole
 
 
-def _log_affinities(part: PairScores, recipe: Recipe) -> Floats:
-    """Return what one model says, as logarithms with -inf on the diagonal."""
+def _rows(parts: Sequence[PairScores], recipe: Recipe, diagonal: Diagonal) -> Floats:
+    logs = np.mean([_log_affinities(part, recipe, diagonal) for part in parts], axis=0)
+    rows: Floats = np.exp(logs - np.logaddexp.reduce(logs, axis=1, keepdims=True))
+    return rows
+
+
+def _log_affinities(part: PairScores, recipe: Recipe, diagonal: Diagonal) -> Floats:
+    """Return what one model says, as logarithms."""
     if part.kind == "cosine":
         logs = part.scores.mean(axis=0) / COSINE_TEMPERATURE
-        return _normal(logs, columns=False)
+        return _normal(logs, diagonal, columns=False)
     picked = part.scores if part.kind == "log-affinity" else part.scores[_layers(part, recipe)]
-    logs = _normal(picked.mean(axis=0), columns=True)
-    return _normal(0.5 * (logs + logs.T), columns=False) if recipe.symmetric else logs
+    logs = _normal(picked.mean(axis=0), diagonal, columns=True)
+    if not recipe.symmetric:
+        return logs
+    return _normal(0.5 * (logs + logs.T), diagonal, columns=False)
 
 
 def _layers(part: PairScores, recipe: Recipe) -> list[int]:
@@ -108,17 +137,14 @@ def _layers(part: PairScores, recipe: Recipe) -> list[int]:
     return [part.prompts.index(prompt) for prompt in recipe.prompts]
 
 
-def _normal(logs: Floats, *, columns: bool) -> Floats:
+def _normal(logs: Floats, diagonal: Diagonal, *, columns: bool) -> Floats:
     """Return logarithms of rows that add up to 1, after columns where that is asked for."""
-    free = np.where(np.eye(len(logs), dtype=bool), -np.inf, logs)
+    free = np.array(logs)
+    if diagonal is Diagonal.NONE:
+        np.fill_diagonal(free, -np.inf)
     if columns:
         free = free - np.logaddexp.reduce(free, axis=0, keepdims=True)
     normal: Floats = free - np.logaddexp.reduce(free, axis=1, keepdims=True)
-    return normal
-
-
-def _exponential_rows(logs: Floats) -> Floats:
-    normal: Floats = np.exp(logs - np.logaddexp.reduce(logs, axis=1, keepdims=True))
     return normal
 
 

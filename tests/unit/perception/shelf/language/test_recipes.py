@@ -5,7 +5,12 @@ import pytest
 
 from executive.core.errors import InputError
 from perception.shelf.language.prompts import PROMPTS
-from perception.shelf.language.recipes import RECIPES, affinity_of, with_diagonal
+from perception.shelf.language.recipes import (
+    RECIPES,
+    affinity_of,
+    rows_with_own_diagonal,
+    with_diagonal,
+)
 from perception.shelf.language.scores import PairScores, Source, load_scores
 
 NAMES = ("tea", "salt", "rice", "soap", "foil")
@@ -86,6 +91,18 @@ def test_an_object_goes_with_itself_as_well_as_with_its_best():
     np.testing.assert_allclose(rows.sum(axis=1), 1.0)
     off = np.where(np.eye(5, dtype=bool), 0.0, rows)
     np.testing.assert_allclose(np.diag(rows), off.max(axis=1))
+
+
+def test_own_diagonals_are_what_models_say_of_an_object_beside_itself():
+    part = asked()
+    logs = part.scores[:1]
+    raw = np.exp(logs[0])
+    raw /= raw.sum(axis=0)
+    np.testing.assert_allclose(
+        rows_with_own_diagonal([part], RECIPES["thesis"]), raw / raw.sum(axis=1, keepdims=True)
+    )
+    vectors = rows_with_own_diagonal([compared()], RECIPES["symmetric"])
+    np.testing.assert_array_equal(vectors.argmax(axis=1), range(5))
 
 
 def test_affinities_say_who_made_them():
