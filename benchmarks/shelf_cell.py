@@ -5,14 +5,17 @@ shows, or after two actions an object. The arm, contacts, friction and suction a
 detection is perfect, and depth is noisy. All policies search the same scenes. A target that shows,
 but not by half, is freed by one rule for all of them: move away what stands before it.
 
-With `--seed` other scenes; `CELLWRIGHT_SCENES=50` in the environment takes that many of them.
+`--scenes N` takes more or fewer scenes, `--policies` some of the policies. With `--kept FILE` each
+search is written down when it is over, and a benchmark that was killed goes on from there.
 """
 
-import os
+import argparse
+import json
 import sys
 import time
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
+from pathlib import Path
 
 import numpy as np
 
@@ -133,18 +136,55 @@ def ways(reach: Reach) -> Mapping[str, Way]:
     }
 
 
-def run(quick: bool, seed: int) -> Sequence[Row]:
+class Kept:
+    """Searches that are over, by scene and policy, in a file with a line for each."""
+
+    def __init__(self, file: Path | None) -> None:
+        """Read what an earlier run has kept; None keeps nothing."""
+        self._file = file
+        self._found: dict[str, Search] = {}
+        if file is not None and file.exists():
+            for line in file.read_text(encoding="utf-8").splitlines():
+                row = json.loads(line)
+                self._found[row["key"]] = Search(**row["search"])
+
+    def get(self, key: str) -> Search | None:
+        """Return a search that is over."""
+        return self._found.get(key)
+
+    def add(self, key: str, search: Search) -> None:
+        """Write down a search."""
+        if self._file is not None:
+            with self._file.open("a", encoding="utf-8") as file:
+                file.write(json.dumps({"key": key, "search": asdict(search)}) + "\n")
+
+
+def run(quick: bool, seed: int, words: Sequence[str] = ()) -> Sequence[Row]:
     """Search every scene by every policy."""
-    scenes = 2 if quick else int(os.environ.get("CELLWRIGHT_SCENES", SCENES))
-    found: dict[str, list[Search]] = {}
+    options = _options(words, quick)
+    kept, found = Kept(options.kept), dict[str, list[Search]]()
     began_s = time.perf_counter()
-    for number in range(scenes):
+    for number in range(options.scenes):
         scenario = {"domain": "pharmacy", "count": COUNTS[number % len(COUNTS)]}
-        for name in ways(Reach()):
-            went = _search(name, scenario, SEED + 1000 * seed + number)
+        for name in options.policies:
+            scene_seed = SEED + 1000 * seed + number
+            key = f"{scene_seed} {name}"
+            went = kept.get(key)
+            if went is None:
+                went = _search(name, scenario, scene_seed)
+                kept.add(key, went)
             found.setdefault(name, []).append(went)
-            _tell(f"{number + 1}/{scenes} {name}: {went}, {time.perf_counter() - began_s:.0f} s")
+            _tell(f"{number + 1} {name}: {went}, {time.perf_counter() - began_s:.0f} s")
     return _rows(found)
+
+
+def _options(words: Sequence[str], quick: bool) -> argparse.Namespace:
+    names = list(ways(Reach()))
+    parser = argparse.ArgumentParser(prog="python -m benchmarks shelf-cell")
+    parser.add_argument("--scenes", type=int, default=2 if quick else SCENES)
+    parser.add_argument("--policies", nargs="+", choices=names, default=names)
+    parser.add_argument("--kept", type=Path, help="file of searches that are over")
+    return parser.parse_args(words)
 
 
 def _search(name: str, scenario: Mapping[str, object], seed: int) -> Search:
