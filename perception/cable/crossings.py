@@ -4,12 +4,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.interpolate import Akima1DInterpolator
 
-from perception.cable.polyline import arc_lengths, point_at, resample
+from perception.cable.polyline import arc_lengths, point_at
 from perception.cable.topology.curve import Strand, StrandCrossing, intersections
 from perception.cable.types import Crossing, Points, Trace
 
 SPACING_PX = 3.0
+# A line is bent between so many points at least, none of them much farther apart than usual.
+FEWEST_BENT, MOST_UNEVEN = 3, 3.0
 REACH_PX = 24.0
 PATH_STEP_PX = 1.0
 # Two centre lines that lie on each other cross many times by chance. Strands of a tight knot
@@ -60,10 +63,10 @@ def find_sites(traces: Sequence[Trace], width_px: float) -> tuple[CrossingSite, 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Line:
-    """A trace in even steps, each point with its arc length on the trace itself.
+    """A trace in even steps, bent between its points, with arc lengths on the trace itself.
 
-    The steps cut corners, so their own lengths would place crossings of a tight knot beside
-    where they are on the trace.
+    A tracer's steps are two cable widths long, and cut the corners of a tight knot. Their own
+    lengths would also place crossings beside where they are on the trace.
     """
 
     points: Points
@@ -71,9 +74,13 @@ class _Line:
 
 
 def _line(trace: Trace) -> _Line:
-    points = resample(trace.points_px, SPACING_PX)
-    length_px = float(arc_lengths(trace.points_px)[-1])
-    return _Line(points, np.linspace(0.0, length_px, len(points)))
+    arcs = arc_lengths(trace.points_px)
+    apart = np.append(True, np.diff(arcs) > 0.0)
+    points, arcs = trace.points_px[apart], arcs[apart]
+    steps = np.linspace(0.0, arcs[-1], max(round(arcs[-1] / SPACING_PX), 1) + 1)
+    if len(points) < FEWEST_BENT or np.diff(arcs).max() > MOST_UNEVEN * np.median(np.diff(arcs)):
+        return _Line(point_at(points, arcs, steps), steps)
+    return _Line(Akima1DInterpolator(arcs, points, method="makima")(steps), steps)
 
 
 def _sites_between(lines: list[_Line], i: int, j: int, width_px: float) -> list[CrossingSite]:
