@@ -9,15 +9,20 @@ before the first plan.
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-import coal
 import numpy as np
 import pinocchio as pin
 
-from executive.core.errors import DeviceError, InputError
-from executive.core.registry import closest
+from executive.core.errors import DeviceError
 from robots.interfaces import ArmName, Floats
+from robots.motion.bodies import (
+    arm_of,
+    attached_geometry,
+    named_boxes,
+    static_geometry,
+    tool_bodies,
+)
 from robots.motion.model import RobotModel
-from robots.placement import AttachedBox, PlanningScene, StaticBox
+from robots.placement import AttachedBox, PlanningScene
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,16 +72,16 @@ class CollisionModel:
         """
         self.robot = robot
         self._geometry = robot.geometry.copy()
-        self._boxes = _named_boxes(robot, scene)
+        self._boxes = named_boxes(robot, scene)
         for box in scene.boxes:
-            self._geometry.addGeometryObject(_static_geometry(box))
+            self._geometry.addGeometryObject(static_geometry(box))
         for carried in scene.attached:
-            self._geometry.addGeometryObject(_attached_geometry(robot, carried))
-        self._tools = _tool_bodies(robot)
+            self._geometry.addGeometryObject(attached_geometry(robot, carried))
+        self._tools = tool_bodies(robot)
         self._ignored = set(robot.arms) - set(robot.arms if arms is None else arms)
         shapes = self._geometry.geometryObjects
         self._body_names = [self._body_name(shape) for shape in shapes]
-        self._arms = [_arm_of(robot, shape.parentJoint) for shape in shapes]
+        self._arms = [arm_of(robot, shape.parentJoint) for shape in shapes]
         self._add_pairs(frozenset(map(frozenset, robot.spec.overlaps)))
         self._data = robot.model.createData()
         self._geometry_data = self._geometry.createData()
@@ -240,53 +245,3 @@ class CollisionModel:
             return margins.finger_world_m if self._tools & set(bodies) else margins.world_m
         arms = {self._arms[first], self._arms[second]}
         return margins.arms_m if None not in arms and len(arms) == 2 else margins.own_m
-
-
-def _named_boxes(robot: RobotModel, scene: PlanningScene) -> dict[str, StaticBox | AttachedBox]:
-    boxes: dict[str, StaticBox | AttachedBox] = {}
-    everything: list[StaticBox | AttachedBox] = [*scene.boxes, *scene.attached]
-    for box in everything:
-        if box.name in boxes or robot.model.existFrame(box.name):
-            raise InputError(
-                f"planning scene: two bodies are called {box.name!r}; expected one of each name"
-            )
-        boxes[box.name] = box
-    for carried in scene.attached:
-        if carried.arm not in robot.arms:
-            raise InputError(
-                f"planning scene: {carried.name}: no arm {carried.arm!r}; "
-                f"{closest(carried.arm, [*robot.arms])}"
-            )
-    return boxes
-
-
-def _arm_of(robot: RobotModel, joint: int) -> str | None:
-    """Return which arm moves what hangs on a joint; None for what no arm moves."""
-    for arm, spec in robot.spec.arms.items():
-        first = robot.model.getJointId(spec.joints[0])
-        if joint in robot.model.subtrees[first]:
-            return arm
-    return None
-
-
-def _tool_bodies(robot: RobotModel) -> set[str]:
-    """Return the links that come as close to things as fingers do."""
-    model = robot.model
-    tools = {link for spec in robot.spec.arms.values() for link in spec.tool_links}
-    fingers = {model.getJointId(name) for spec in robot.spec.arms.values() for name in spec.fingers}
-    links = [frame for frame in model.frames if frame.type == pin.FrameType.BODY]
-    return tools | {str(link.name) for link in links if link.parentJoint in fingers}
-
-
-def _static_geometry(box: StaticBox) -> pin.GeometryObject:
-    return pin.GeometryObject(box.name, 0, _pose(box), coal.Box(*box.size_m))
-
-
-def _attached_geometry(robot: RobotModel, box: AttachedBox) -> pin.GeometryObject:
-    tool = robot.model.frames[robot.model.getFrameId(robot.spec.arms[box.arm].tcp)]
-    placed = tool.placement * _pose(box)
-    return pin.GeometryObject(box.name, tool.parentJoint, placed, coal.Box(*box.size_m))
-
-
-def _pose(box: StaticBox | AttachedBox) -> pin.SE3:
-    return pin.XYZQUATToSE3(np.array([*box.centre_m, *box.quat_xyzw]))

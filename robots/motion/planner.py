@@ -3,43 +3,30 @@
 Each request is answered from its arguments and the seed, counted by request, alone.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import wraps
-from time import perf_counter
-from typing import ParamSpec
 
 import numpy as np
 
 from robots.interfaces import ArmName, Floats, Goal, MotionFailure, Trajectory
 from robots.motion.collision import CollisionModel
+from robots.motion.failures import (
+    beyond_limits,
+    collision_failure,
+    costed,
+    cut_short,
+    no_path,
+    untimed,
+)
 from robots.motion.line import ArmLine, in_step, line_steps, line_variants
 from robots.motion.line_timing import time_curve
 from robots.motion.model import RobotModel
 from robots.motion.own_pace import beside_each_other
 from robots.motion.path import PathSearch, Space
-from robots.motion.search import called
 from robots.motion.solver import GoalSolver
 from robots.motion.timing import cut_corners, stop_at_waypoints
-from robots.motion.verify import collision_failure, find_fault
+from robots.motion.verify import find_fault
 from robots.placement import PlanningScene
-
-P = ParamSpec("P")
-_Answer = Trajectory | MotionFailure
-
-
-def _costed(method: Callable[P, _Answer]) -> Callable[P, _Answer]:
-    """Let a failure say what it cost."""
-
-    @wraps(method)
-    def timed(*args: P.args, **kwargs: P.kwargs) -> _Answer:
-        began = perf_counter()
-        answer = method(*args, **kwargs)
-        if isinstance(answer, MotionFailure):
-            return replace(answer, elapsed_ms=1e3 * (perf_counter() - began))
-        return answer
-
-    return timed
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,7 +99,7 @@ class MotionPlanner:
         self.solver.set_openings(openings_m)
         self.solver.together.excuse(positions_rad)
 
-    @_costed
+    @costed
     def to_goals(
         self, start_rad: Floats, goals: Mapping[ArmName, Goal]
     ) -> Trajectory | MotionFailure:
@@ -122,7 +109,7 @@ class MotionPlanner:
             return found
         return self._to_any(start_rad, found, tuple(goals))
 
-    @_costed
+    @costed
     def at_own_pace(
         self, start_rad: Floats, goals: Mapping[ArmName, Goal]
     ) -> Trajectory | MotionFailure:
@@ -154,18 +141,17 @@ class MotionPlanner:
                     return together
         return None
 
-    @_costed
+    @costed
     def to_configuration(self, start_rad: Floats, end_rad: Floats) -> Trajectory | MotionFailure:
         """Plan to a configuration of all arms."""
-        beyond = np.maximum(self.limits.lower - end_rad, end_rad - self.limits.upper)
-        if beyond.max() > 0.0:
-            return self._beyond_limits(end_rad, int(beyond.argmax()))
+        if not self.limits.contain(end_rad, slack_rad=1e-6):
+            return beyond_limits(self.robot, end_rad)
         together = self.solver.together
         if together.collides(end_rad):
             return collision_failure(together, end_rad, "path", "at the configuration asked for")
         return self._to_any(start_rad, [end_rad], self.robot.arms)
 
-    @_costed
+    @costed
     def along_lines(
         self, start_rad: Floats, displacements_m: Mapping[ArmName, Floats]
     ) -> Trajectory | MotionFailure:
@@ -180,16 +166,7 @@ class MotionPlanner:
             timed += answer.stage == "verify"
             if timed >= self.settings.line_timings:
                 break
-        return failures[0]
-
-    def _beyond_limits(self, end_rad: Floats, joint: int) -> MotionFailure:
-        name = [name for arm in self.robot.spec.arms.values() for name in arm.joints][joint]
-        lower, upper = self.limits.lower[joint], self.limits.upper[joint]
-        text = (
-            f"{name} is beyond its limits in the configuration asked for; got "
-            f"{end_rad[joint]:.3f} rad; expected {lower:.3f} to {upper:.3f} rad"
-        )
-        return MotionFailure("motion.unreachable", "path", text, cause="joint_limit", joint=name)
+        return replace(failures[0], tried=len(failures))
 
     def _line(
         self,
@@ -197,9 +174,10 @@ class MotionPlanner:
         displacements_m: Mapping[ArmName, Floats],
         lines: Mapping[ArmName, ArmLine],
     ) -> Trajectory | MotionFailure:
+        steps = line_steps(*displacements_m.values())
         for arm, line in lines.items():
             if not line.complete:
-                return _cut_short(arm, displacements_m, line)
+                return cut_short(arm, displacements_m[arm], len(line.samples_rad) - 1, steps)
         samples = in_step(self.robot, start, lines)
         hit = next((q for q in samples if self.solver.together.collides(q)), None)
         if hit is not None:
@@ -207,7 +185,7 @@ class MotionPlanner:
         longest_m = max(float(np.linalg.norm(d)) for d in displacements_m.values())
         rate_1_s = self.settings.line_speed_m_s / max(longest_m, 1e-9)
         trajectory = time_curve(samples, self.limits, rate_1_s)
-        return _untimed("line") if trajectory is None else self._checked(trajectory)
+        return untimed("line") if trajectory is None else self._checked(trajectory)
 
     def _to_any(
         self,
@@ -230,7 +208,10 @@ class MotionPlanner:
             if not isinstance(answer, MotionFailure):
                 return answer
             failure = answer
-        return failure or self._no_path(arms, ends)
+        if failure is not None:
+            return failure
+        tried = min(len(ends), self.settings.path_goals)
+        return no_path(arms, tried, self.settings.path_checks)
 
     def _space(self, base: Floats, moving: Floats, collision: CollisionModel) -> Space:
         whole = base.copy()
@@ -247,7 +228,7 @@ class MotionPlanner:
     ) -> Trajectory | MotionFailure:
         stops = stop_at_waypoints(list(path), self.limits)
         if stops is None:
-            return _untimed("timing")
+            return untimed("timing")
         tries = self.settings.corner_tries if len(path) > 2 else 0
         cut = cut_corners(stops, self.limits, lambda q: not collision.collides(q), rng, tries)
         answer = self._checked(cut, collision)
@@ -259,28 +240,3 @@ class MotionPlanner:
         self, trajectory: Trajectory, checker: CollisionModel | None = None
     ) -> Trajectory | MotionFailure:
         return find_fault(trajectory, self.limits, checker or self.solver.together) or trajectory
-
-    def _no_path(self, arms: Sequence[str], ends: Sequence[Floats]) -> MotionFailure:
-        tried = min(len(ends), self.settings.path_goals)
-        text = (
-            f"{called(*arms)}: no path to any of {tried} configurations"
-            f" within {self.settings.path_checks} collision checks each"
-        )
-        return MotionFailure("motion.no_path", "path", text, cause="search", tried=tried)
-
-
-def _cut_short(
-    arm: ArmName, displacements_m: Mapping[ArmName, Floats], line: ArmLine
-) -> MotionFailure:
-    length_m = float(np.linalg.norm(displacements_m[arm]))
-    possible_m = length_m * (len(line.samples_rad) - 1) / line_steps(*displacements_m.values())
-    text = (
-        f"{called(arm)}: only {possible_m:.3f} m of the {length_m:.3f} m line is within the joint"
-        " limits"
-    )
-    return MotionFailure("motion.unreachable", "line", text, cause="reach")
-
-
-def _untimed(stage: str) -> MotionFailure:
-    text = "Ruckig found no motion between two states"
-    return MotionFailure("motion.timing", stage, text, cause="timing")

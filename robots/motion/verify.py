@@ -8,6 +8,7 @@ import numpy as np
 from robots.interfaces import Floats, MotionFailure, Trajectory
 from robots.limits import JointLimits
 from robots.motion.collision import CollisionModel
+from robots.motion.failures import collision_failure
 
 CONTROL_PERIOD_S = 0.004
 _TOLERANCE = 1e-3  # relative, on velocity and acceleration
@@ -45,17 +46,6 @@ def _collisions(
     for time, q in zip(times, positions, strict=True):
         if collision.collides(q):
             yield collision_failure(collision, q, "verify", f"after {time:.2f} s")
-
-
-def collision_failure(
-    collision: CollisionModel, positions_rad: Floats, stage: str, where: str
-) -> MotionFailure:
-    """Return a failure that names the two bodies that collide at a configuration."""
-    pair = collision.colliding_pair(positions_rad)
-    names = " and ".join(pair) if pair else "two bodies"
-    distance_m = collision.distance_m(pair, positions_rad) if pair else None
-    text = f"{where}, {names} collide"
-    return MotionFailure("motion.collision", stage, text, pair, "collision", distance_m)
 
 
 def _timing(text: str) -> MotionFailure:

@@ -141,6 +141,15 @@ def test_joints_that_turn_freely_take_the_shorter_way(arm, driver, joints):
     assert np.abs(sample(plan)[1] - turned).max() < np.pi
 
 
+def test_a_configuration_beyond_the_limits_names_the_joint(arm, joints):
+    beyond = READY[joints].copy()
+    beyond[1] = 0.1
+    failure = arm.plan_configuration(beyond)
+    assert (failure.code, failure.cause) == ("motion.unreachable", "joint_limit")
+    assert failure.joint == "joint_2"
+    assert failure.elapsed_ms > 0.0
+
+
 def test_the_same_seed_plans_the_same(driver, joints):
     def motion():
         arm = PlannedArm(driver, kinova_spec(joints), SCENE, READY[joints], seed=5)
