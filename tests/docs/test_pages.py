@@ -139,7 +139,7 @@ def options_of(*command: str) -> set[str]:
 def test_commands_and_their_options_exist():
     spoken: dict[tuple[str, ...], set[str]] = {}
     for line in (line for page in PAGES for line in commands(page)):
-        found = re.match(r"(?:\S*/)?cellwright ((?:tree |perceive |train )?[a-z-]+)\b(.*)", line)
+        found = re.match(r"(?:\S*/)?cellwright ((?:tree |perceive |train |affinity )?[a-z-]+)\b(.*)", line)
         if found:
             names = tuple(found[1].split())
             spoken.setdefault(names, set()).update(re.findall(r"--[a-z-]+", found[2]))
