@@ -132,6 +132,11 @@ class KinematicShelfCell:
         return STEP_S
 
     @property
+    def boxes(self) -> Mapping[str, Box]:
+        """Where everything stands now; truth, for scoring alone."""
+        return self._contents.boxes
+
+    @property
     def search_camera(self) -> CameraModel:
         """The camera at the middle viewpoint."""
         return self._front
