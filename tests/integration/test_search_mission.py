@@ -1,5 +1,7 @@
 """The mission that searches a shelf, end to end in the world without physics."""
 
+from pathlib import Path
+
 import pytest
 
 from executive.app.catalogue import port_types, skills
@@ -44,7 +46,7 @@ def test_it_ends_with_the_target_in_hand_and_says_so(run):
 
 
 def test_looks_and_beliefs_are_in_the_recording(run):
-    recording = Recording.open(run.report.recording)
+    recording = Recording.open(Path(run.report.recording))
     images = [image.png for image in recording.images()]
     looks = sum(action.name == "look_at_shelf" for action in run.report.actions)
     assert len(images) >= 2 * looks
