@@ -8,6 +8,7 @@ from typing import Annotated, Any
 from fastapi import FastAPI, Path, Query, Request, WebSocket, WebSocketDisconnect
 from fastapi.exceptions import RequestValidationError
 from fastapi.responses import JSONResponse, Response
+from starlette.exceptions import HTTPException
 
 from executive.app.service.cell_service import BusyError, CellService, UnknownMissionError
 from executive.app.service.guard import Guard
@@ -50,6 +51,7 @@ def application(service: CellService, *, token: str | None = None) -> FastAPI:
     app.add_middleware(Guard, token=token)
     app.add_exception_handler(CellwrightError, _refused)
     app.add_exception_handler(RequestValidationError, _malformed)
+    app.add_exception_handler(HTTPException, _out_of_place)
     _missions(app, service)
     _cell(app, service)
     _ticks(app, service)
@@ -164,6 +166,12 @@ async def _refused(_: Request, error: Exception) -> Response:
     codes: dict[type[Exception], int] = {UnknownMissionError: 404, BusyError: 409}
     code = codes.get(type(error), 400 if isinstance(error, InputError) else 500)
     return JSONResponse({"error": str(error)}, code)
+
+
+async def _out_of_place(_: Request, error: Exception) -> Response:
+    """Say in our form what the framework refuses: addresses, methods, bodies that are no text."""
+    assert isinstance(error, HTTPException)
+    return JSONResponse({"error": error.detail}, error.status_code, error.headers)
 
 
 async def _malformed(_: Request, error: Exception) -> Response:

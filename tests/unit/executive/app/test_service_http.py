@@ -48,6 +48,14 @@ def test_a_mission_is_asked_for_followed_stopped_and_gone_on_from(client, servic
     assert [one["id"] for one in client.get("/missions").json()] == [1, 2]
 
 
+@pytest.mark.parametrize("body", [b"\xe0\xb1\x91\xff;", b"{", b"", b"[" * 5000, b"\x00"])
+def test_a_body_that_is_no_json_is_refused_in_the_same_form(client, body):
+    answer = client.post("/missions", content=body, headers={"content-type": "application/json"})
+    assert answer.status_code in (400, 422)
+    assert answer.json()["error"]
+    assert client.put("/missions").json() == {"error": "Method Not Allowed"}
+
+
 def test_refusals_say_why(client):
     assert client.get("/missions/7").status_code == 404
     paused = client.post("/cell/pause")
