@@ -155,20 +155,22 @@ def executed_motion(recording: Recording) -> ExecutedMotion:
     for position, opening in zip(positions, openings_m, strict=True):
         collision.set_openings({"left": float(opening[0]), "right": float(opening[1])})
         touching += collision.collides(position)
-    broken = _beyond(yumi_limits(), times_s, positions, velocities)
+    broken = broken_limits(yumi_limits(), times_s, positions, velocities)
     return ExecutedMotion(len(times_s), int(broken.sum()), touching)
 
 
-def _beyond(
+def broken_limits(
     limits: JointLimits, times_s: Floats, positions: Floats, velocities: Floats
 ) -> NDArray[np.bool_]:
     """Say of each sample whether a joint is beyond a limit, shape (K,)."""
     low, high = limits.lower - POSITION_SLACK_RAD, limits.upper + POSITION_SLACK_RAD
     beyond = np.asarray(((positions < low) | (positions > high)).any(axis=1))
-    rates, most = velocities, (limits.velocity, limits.acceleration, limits.jerk)
-    steps_s = np.diff(times_s)[:, None]
-    for number, limit in enumerate(most):
+    rates, at_s = velocities, times_s
+    for number, limit in enumerate((limits.velocity, limits.acceleration, limits.jerk)):
         if number:
-            rates = np.diff(rates, axis=0) / steps_s[number - 1 :]
+            # A mean over an interval differs from that over the next one by no more than the
+            # limit times what lies between their middles, however uneven the samples are.
+            rates = np.diff(rates, axis=0) / np.diff(at_s)[:, None]
+            at_s = (at_s[1:] + at_s[:-1]) / 2.0
         beyond[number:] |= (np.abs(rates) > RATE_SLACK * limit).any(axis=1)
     return beyond

@@ -38,6 +38,7 @@ _SKILLS: Final = {
     "refuse_move": "skills.shelf.refuse_move:RefuseMove",
     "restore_order": "skills.shelf.restore_order:RestoreOrder",
     "retrieve_object": "skills.shelf.retrieve_object:RetrieveObject",
+    "separate_ends": "skills.cable.separate_ends:SeparateEnds",
     "state_claim": "skills.cable.state_claim:StateClaim",
     "state_search": "skills.shelf.state_search:StateSearch",
     "stir_cable": "skills.cable.stir_cable:StirCable",

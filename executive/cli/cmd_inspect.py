@@ -42,6 +42,14 @@ def inspect(
         Path | None,
         typer.Option(metavar="FILE", help="Write scene, images and joints for the Rerun viewer."),
     ] = None,
+    sheet: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="Write all looks of the run into one image, .png."),
+    ] = None,
+    video: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="Write a video of the table cell, .webm or .mp4."),
+    ] = None,
     host: Annotated[
         str, typer.Option(help="Address of the page; others than this machine's need its token.")
     ] = "127.0.0.1",
@@ -58,6 +66,8 @@ def inspect(
     """
     if rerun is not None:
         _write_rerun(recording, rerun)
+    _write_pictures(recording, sheet, video)
+    if (rerun, sheet, video) != (None, None, None):
         return
     if web:
         serve_page(recording, chatter(), host=host, port=port, open_browser=open_browser)
@@ -84,6 +94,20 @@ def _write_rerun(recording: Path, file: Path) -> None:
     with recording_named_by_the_user():
         write_rerun(recording, file)
     chatter().print(f"{file}: look at it with: rerun {file}", soft_wrap=True)
+
+
+def _write_pictures(recording: Path, sheet: Path | None, video: Path | None) -> None:
+    if sheet is None and video is None:
+        return
+    from executive.app.pictures import write_sheet, write_video
+
+    with recording_named_by_the_user():
+        if sheet is not None:
+            write_sheet(recording, sheet)
+            chatter().print(f"{sheet}: all looks of the run", soft_wrap=True)
+        if video is not None:
+            write_video(recording, video)
+            chatter().print(f"{video}: the cell, four times as fast", soft_wrap=True)
 
 
 def _look(path: Path, tick: int | None, node: str | None) -> None:

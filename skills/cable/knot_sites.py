@@ -27,6 +27,8 @@ REACH_Y_M = (-0.20, 0.17)
 CABLE_LENGTH_M = 3.0
 # A cage farther inside a knot than this would draw the knot, and not its tail.
 DEEPEST_CAGE_M = 0.35
+# How far behind a knot a pinch may be where there is no room in it, and what that costs.
+BEHIND_M, BEHIND_COST = 0.4, 20.0
 # Beyond the places that are given for a knot others are tried along so much of the trace.
 WALK_ARC = 0.15
 
@@ -45,25 +47,29 @@ def searched_pairs(
 def deeper_pairs(
     trace: Trace, crossings: Sequence[Crossing], knot: Knot, frame: CameraFrame
 ) -> list[Pair]:
-    """Return pairs anywhere in a knot, the cage first along the trace, best first.
+    """Return pairs anywhere in a knot and behind it, the cage first along the trace, best first.
 
     Drawing the tail through more crossings rubs more, and so does a loop that is held farther
-    from where it closes; but a small knot has no other room for two hands.
+    from where it closes; but a small knot has no other room for two hands. Behind the knot comes
+    last: it is drawn together before the tail comes.
     """
     visits = np.array([arc for c in crossings for arc in (c.arc_over, c.arc_under)])
-    sites = sites_between(trace, *knot.interval)
+    low, high = knot.interval
+    behind = high + BEHIND_M / CABLE_LENGTH_M
 
     def cost(pair: Pair) -> float:
         outside = (visits < pair[0].arc) | (visits > pair[1].arc)
-        inside = (visits > knot.interval[0]) & (visits < knot.interval[1])
+        inside = (visits > low) & (visits < high)
         crowding = sum(max(0.0, 1.0 - site.room_px / SIDE_ROOM_PX) for site in pair)
         between_m = (pair[1].arc - pair[0].arc) * CABLE_LENGTH_M
-        inwards_m = (pair[0].arc - knot.interval[0]) * CABLE_LENGTH_M
-        return float((outside & inside).sum()) + between_m + 2.0 * inwards_m + 0.4 * crowding
+        inwards_m = (pair[0].arc - low) * CABLE_LENGTH_M
+        beyond = BEHIND_COST if pair[1].arc > high else 0.0
+        visited = float((outside & inside).sum())
+        return visited + between_m + 2.0 * inwards_m + 0.4 * crowding + beyond
 
-    deepest = knot.interval[0] + DEEPEST_CAGE_M / CABLE_LENGTH_M
-    cages = [site for site in sites if site.arc <= deepest]
-    return [pair for pair in _roomy(cages, sites, frame, cost) if pair[0].arc < pair[1].arc]
+    cages = sites_between(trace, low, min(high, low + DEEPEST_CAGE_M / CABLE_LENGTH_M))
+    pinches = sites_between(trace, low, min(1.0, behind))
+    return [pair for pair in _roomy(cages, pinches, frame, cost) if pair[0].arc < pair[1].arc]
 
 
 def ranked_pairs(

@@ -9,11 +9,14 @@ from benchmarks.untangle_trial import Trial, Wanted, left_to_run, read_trials
 from benchmarks.untangle_truth import (
     CableMoments,
     Failure,
+    broken_limits,
     failure_of,
     knots_left,
     undone_s,
 )
 from executive.engine.recording.messages import ActionReport, RunReport
+from robots.limits import yumi_limits
+from robots.placement import HOME_RAD
 from simulation.cable.tiers import tier_cable
 
 
@@ -81,6 +84,30 @@ def test_failures_are_told_apart(one_knot, claimed, reasons, end, expected):
 def test_a_knot_more_than_at_first_is_a_complex_one(one_knot, two_knots):
     assert failure_of(report(), False, moments(one_knot, two_knots)) is Failure.COMPLEX_KNOT
     assert failure_of(report(), True, moments(one_knot, straight())) is None
+
+
+def moved(times_s, speed):
+    """Positions and velocities of a joint that is sampled at these times."""
+    velocities = np.zeros((len(times_s), 14))
+    velocities[:, 3] = speed(times_s)
+    return times_s, np.zeros_like(velocities) + HOME_RAD, velocities
+
+
+def test_limits_hold_however_uneven_the_samples_are_and_no_jump_is_missed():
+    limits = yumi_limits()
+    times_s = np.array([0.0, 1.25, 1.3, 1.35, 1.4, 1.6, 1.65, 1.7])
+    jerk = 0.9 * float(limits.jerk[3])
+    begins_s = 1.22
+
+    def speed(at_s):
+        run_s = np.clip(at_s - begins_s, 0.0, 0.1)
+        return 0.5 * jerk * run_s**2
+
+    assert not broken_limits(limits, *moved(times_s, speed))[:4].any()
+    jumps = broken_limits(limits, *moved(times_s, lambda at_s: 1.5 * (at_s > 1.38)))
+    assert jumps.any()
+    fast = 1.1 * float(limits.velocity[3])
+    assert broken_limits(limits, *moved(times_s, lambda at_s: np.full(len(at_s), fast))).all()
 
 
 def trial(seed, cable="C1", untangled=True, failure=None):

@@ -1,5 +1,7 @@
 """Predicted pulls: cable is neither lost nor stretched, hands stay in reach, heaps are avoided."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from cell_fakes import ArrivingArms, finished, frame, overhand
@@ -90,9 +92,21 @@ def test_a_planned_dilation_ends_where_the_cable_should_lie_best():
     )
 
 
-def test_deeper_pairs_keep_the_cage_before_the_pinch_within_the_knot():
+def test_deeper_pairs_begin_in_the_knot_and_those_behind_it_come_last():
     trace, crossings, knot = overhand()
     pairs = deeper_pairs(trace, crossings, knot, frame())
     low, high = knot.interval
+    behind = [pinch.arc > high for _, pinch in pairs]
+    assert all(low < cage.arc < pinch.arc for cage, pinch in pairs)
+    assert all(cage.arc < high for cage, _ in pairs)
+    assert behind == sorted(behind)
+    assert not behind[0]
+
+
+def test_a_knot_without_room_inside_is_held_behind_it():
+    trace, crossings, knot = overhand()
+    arc = knot.interval[0]
+    small = replace(knot, interval=(arc, arc + 0.05))
+    pairs = deeper_pairs(trace, crossings, small, frame())
     assert pairs
-    assert all(low < cage.arc < pinch.arc < high for cage, pinch in pairs)
+    assert all(pinch.arc > small.interval[1] for _, pinch in pairs)

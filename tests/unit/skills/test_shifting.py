@@ -1,8 +1,11 @@
+from dataclasses import replace
+
 import numpy as np
 from cell_fakes import ArrivingArms, finished, frame, overhand
 
 from executive.core.work import InlineWorker
 from perception.cable.types import Endpoint
+from skills.cable.bring_knot import BringKnot
 from skills.cable.perturb_endpoint import PerturbEndpoint
 from skills.cable.pull_in import PullIn
 from skills.cable.pulling import towards_middle
@@ -86,3 +89,14 @@ def test_a_connector_is_moved_clear_of_the_strand_that_crosses_it():
     step_m = roomiest_steps(frame(), connector, room_map(cable, hold), np.random.default_rng(0))[0]
     moved = frame().camera.project(frame().camera.on_plane(connector) + step_m)
     assert np.abs(moved[:, 0] - 561.0).min() > 20.0
+
+
+def test_a_knot_is_brought_to_the_middle_once():
+    trace, _, knot = overhand()
+    inputs = {"frame": frame(), "trace": trace, "knots": (knot,)}
+    outcome, _ = finished(BringKnot(ArrivingArms(), InlineWorker()), inputs)
+    assert outcome.reason.code == "knot.near"
+    aside = replace(trace, points_px=trace.points_px + np.array([220.0, 0.0]))
+    arms = ArrivingArms()
+    outcome, _ = finished(BringKnot(arms, InlineWorker()), inputs | {"trace": aside})
+    assert outcome.status == "SUCCESS"

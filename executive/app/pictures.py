@@ -1,0 +1,214 @@
+"""Pictures of a recorded run: a contact sheet of all its looks, and a video of the cell."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from executive.app.views import scene_frames
+from executive.core.errors import InputError, RecordingError
+from executive.engine.recording.reader import Recording
+from executive.inspector.overlays import picture_of
+from executive.inspector.shapes import Colour, Shape
+from perception.camera import CameraModel
+from robots.descriptions.yumi import yumi
+from robots.interfaces import Floats
+from robots.placement import TABLE_SIZE_M
+from robots.viewer import SceneFrame
+from simulation.poses import pose_matrices
+from simulation.render.primitives import join
+from simulation.render.renderer import Renderer
+from simulation.render.sensor import SensorParameters, expose
+from simulation.render.shapes import cable_shapes, robot_shapes
+
+ColourImage = NDArray[np.uint8]
+
+# Blue, green, red, as OpenCV has them.
+COLOURS: dict[Colour, tuple[int, int, int]] = {
+    "path": (220, 160, 60),
+    "good": (120, 220, 90),
+    "doubtful": (60, 200, 255),
+    "bad": (80, 80, 255),
+    "hand": (255, 90, 220),
+    "end": (255, 220, 80),
+}
+WHITE = (255, 255, 255)
+FONT = cv2.FONT_HERSHEY_SIMPLEX
+# A sheet has so many looks in a row, each at this share of its size.
+COLUMNS, SHARE = 4, 0.5
+# A video shows so many frames a second, and the cell's time so many times as fast.
+FRAMES_HZ, SPEED = 10.0, 4.0
+CODECS = {".webm": "VP80", ".mp4": "mp4v"}
+SIZE_PX, FOCAL_PX = (720, 480), 760.0
+# From beyond the table, over the cable, towards the robot.
+EYE_M, TARGET_M = (0.35, 1.25, 1.05), (0.0, -0.08, 0.05)
+
+
+def write_sheet(recording: Path, file: Path) -> None:
+    """Write all images of a run in one, each with what was believed about it.
+
+    Raises:
+        InputError: The file is no image's, or cannot be written.
+        RecordingError: The recording cannot be read, or holds no image.
+    """
+    run = Recording.open(recording)
+    looks = [_captioned(look) for look in _looks(run)]
+    if not looks:
+        raise RecordingError(f"{recording}: no looks to show; got no image; expected some")
+    height, width = (max(look.shape[axis] for look in looks) for axis in (0, 1))
+    rows = -(-len(looks) // COLUMNS)
+    sheet: ColourImage = np.zeros((rows * height, COLUMNS * width, 3), np.uint8)
+    for number, look in enumerate(looks):
+        top, left = number // COLUMNS * height, number % COLUMNS * width
+        sheet[top : top + look.shape[0], left : left + look.shape[1]] = look
+    _save(file, sheet)
+
+
+def _save(file: Path, image: ColourImage) -> None:
+    try:
+        written = cv2.imwrite(str(file), image)
+    except cv2.error:
+        written = False
+    if not written:
+        raise InputError(f"--sheet {file}: cannot be written; expected a .png or .jpg in a folder")
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Look:
+    """An image, when it was taken, and what was made of it."""
+
+    image: NDArray[np.uint8]
+    time_s: float
+    shapes: Sequence[Shape]
+
+
+def _looks(run: Recording) -> Iterator[_Look]:
+    """Yield the images in order, each as it was understood when the next one came."""
+    images = list(run.images())
+    taken = {image.number: image for image in images}
+    ends = {_tick_at(run, image.time_s): None for image in images}
+    last_ticks = [*(tick - 1 for tick in [*ends][1:]), len(run) - 1]
+    for tick in last_ticks:
+        picture = picture_of(run.blackboard(max(tick, 0)))
+        if picture is not None and picture.image in taken:
+            image = run.image(picture.image)
+            yield _Look(image, taken[picture.image].time_s, picture.shapes)
+
+
+def _tick_at(run: Recording, time_s: float) -> int:
+    """Return the first tick at or after a time."""
+    low, high = 0, len(run) - 1
+    while low < high:
+        middle = (low + high) // 2
+        low, high = (low, middle) if run.tick(middle).time_s >= time_s else (middle + 1, high)
+    return low
+
+
+def _captioned(look: _Look) -> ColourImage:
+    grey = cv2.cvtColor(look.image, cv2.COLOR_GRAY2BGR) if look.image.ndim == 2 else look.image
+    canvas: ColourImage = np.asarray(grey, dtype=np.uint8).copy()
+    for shape in look.shapes:
+        _draw(canvas, shape)
+    cv2.putText(canvas, f"{look.time_s:.1f} s", (12, 36), FONT, 1.0, WHITE, 2, cv2.LINE_AA)
+    small = cv2.resize(canvas, None, fx=SHARE, fy=SHARE, interpolation=cv2.INTER_AREA)
+    return np.asarray(small, dtype=np.uint8)
+
+
+def _draw(canvas: ColourImage, shape: Shape) -> None:
+    if not shape.points:
+        return
+    colour = COLOURS[shape.colour]
+    points = np.rint(np.array(shape.points)).astype(np.int32)
+    at = (int(points[0, 0]), int(points[0, 1]))
+    if shape.kind == "line":
+        cv2.polylines(canvas, [points], isClosed=False, color=colour, thickness=2)
+    elif shape.kind == "arrow":
+        cv2.arrowedLine(canvas, at, (int(points[1, 0]), int(points[1, 1])), colour, 2)
+    else:
+        cv2.circle(canvas, at, 10 if shape.kind == "ring" else 5, colour, 2)
+    if shape.label:
+        cv2.putText(canvas, shape.label, (at[0] + 12, at[1] - 8), FONT, 0.6, colour, 1, cv2.LINE_AA)
+
+
+def write_video(recording: Path, file: Path) -> None:
+    """Write a video of the table cell in a run, four times as fast, with what was believed.
+
+    Args:
+        recording: Of a cell with a table, two arms and a cable.
+        file: `.webm` for browsers, or `.mp4`.
+
+    Raises:
+        InputError: The file has another ending, or cannot be written.
+        RecordingError: The recording cannot be read, or holds no such cell.
+    """
+    if file.suffix not in CODECS:
+        known = ", ".join(CODECS)
+        raise InputError(f"--video {file}: got ending {file.suffix!r}; expected one of: {known}")
+    run = Recording.open(recording)
+    film = cv2.VideoWriter(
+        str(file), cv2.VideoWriter.fourcc(*CODECS[file.suffix]), FRAMES_HZ, SIZE_PX
+    )
+    if not film.isOpened():
+        raise InputError(f"--video {file}: cannot be written; expected a folder that is there")
+    try:
+        _film(run, film)
+    finally:
+        film.release()
+
+
+def _film(run: Recording, film: cv2.VideoWriter) -> None:
+    rng, camera = np.random.default_rng(0), oblique_camera()
+    renderer = Renderer(camera, TABLE_SIZE_M, rng)
+    due_s, shown = 0.0, 0
+    for frame in scene_frames(run):
+        if frame.cable_m is not None and frame.time_s >= due_s:
+            film.write(_drawn(frame, camera, renderer, rng))
+            due_s, shown = frame.time_s + SPEED / FRAMES_HZ, shown + 1
+    if not shown:
+        raise RecordingError(f"{run.path}: nothing to film; got no cable; expected a table cell")
+
+
+def oblique_camera() -> CameraModel:
+    """Return a camera that looks over the table at the robot."""
+    forward = np.subtract(TARGET_M, EYE_M)
+    forward = forward / np.linalg.norm(forward)
+    right = np.cross(forward, (0.0, 0.0, 1.0))
+    right = right / np.linalg.norm(right)
+    T_world_camera = np.eye(4)
+    T_world_camera[:3, :3] = np.column_stack([right, np.cross(forward, right), forward])
+    T_world_camera[:3, 3] = EYE_M
+    middle = (0.5 * (SIZE_PX[0] - 1), 0.5 * (SIZE_PX[1] - 1))
+    return CameraModel(*SIZE_PX, FOCAL_PX, middle, T_world_camera)
+
+
+def _drawn(
+    frame: SceneFrame, camera: CameraModel, renderer: Renderer, rng: np.random.Generator
+) -> ColourImage:
+    assert frame.cable_m is not None
+    poses = np.array(list(frame.link_poses.values()))
+    links = dict(zip(frame.link_poses, pose_matrices(poses[:, :3], poses[:, 3:]), strict=True))
+    cable = cable_shapes(frame.cable_m, frame.cable_radius_m, plug_poses(frame.cable_m))
+    rendering = renderer.render(join([robot_shapes(yumi(), links), cable]))
+    grey = expose(rendering, SensorParameters(speckle=0.0), rng)
+    canvas: ColourImage = np.asarray(cv2.cvtColor(grey, cv2.COLOR_GRAY2BGR), dtype=np.uint8)
+    if frame.trace_m is not None:
+        points = np.rint(camera.project(frame.trace_m)).astype(np.int32)
+        cv2.polylines(canvas, [points], isClosed=False, color=COLOURS["path"], thickness=1)
+    caption = f"{frame.time_s:6.1f} s  {frame.caption.replace(' · ', '  ')}"
+    cv2.putText(canvas, caption, (12, 24), FONT, 0.6, WHITE, 1, cv2.LINE_AA)
+    return canvas
+
+
+def plug_poses(nodes_m: Floats) -> Floats:
+    """Return T_world_plug of both ends of a cable, x out of the end, shape (2, 4, 4)."""
+    poses = np.tile(np.eye(4), (2, 1, 1))
+    for pose, end, inner in zip(poses, nodes_m[[0, -1]], nodes_m[[2, -3]], strict=True):
+        out = (end - inner) / max(float(np.linalg.norm(end - inner)), 1e-9)
+        side = np.cross((0.0, 0.0, 1.0), out)
+        side = side / max(float(np.linalg.norm(side)), 1e-9)
+        pose[:3, :3] = np.column_stack([out, side, np.cross(out, side)])
+        pose[:3, 3] = end
+    return poses
