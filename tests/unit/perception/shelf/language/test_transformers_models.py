@@ -20,25 +20,39 @@ SOURCE = Source("tiny", "1", "MIT", "2026-01-02")
 WORDS = ("tea", "tea bags", "salt", "black pepper mill")
 
 
-@pytest.fixture(scope="module")
-def folder(tmp_path_factory):
-    """A random model of a few hundred weights, with a tokenizer that cuts words into letters."""
-    from tokenizers import Tokenizer, decoders, models, pre_tokenizers
-    from transformers import LlamaConfig, LlamaForCausalLM, PreTrainedTokenizerFast
+def tiny(kind, words):
+    """Return a random model of a few hundred weights, with the parts that its family has."""
+    from transformers import (
+        Gemma3ForCausalLM,
+        Gemma3TextConfig,
+        LlamaConfig,
+        LlamaForCausalLM,
+    )
 
-    path = tmp_path_factory.mktemp("tiny")
+    size = {
+        "vocab_size": words, "hidden_size": 16, "intermediate_size": 32, "num_hidden_layers": 2,
+        "num_attention_heads": 2, "num_key_value_heads": 1, "initializer_range": 0.5,
+    }  # fmt: skip
+    torch.manual_seed(0)
+    if kind == "llama":
+        return LlamaForCausalLM(LlamaConfig(**size))
+    return Gemma3ForCausalLM(Gemma3TextConfig(**size, head_dim=8, sliding_window=8))
+
+
+@pytest.fixture(scope="module", params=["llama", "gemma"])
+def folder(request, tmp_path_factory):
+    """A tiny model, with a tokenizer that cuts words into letters."""
+    from tokenizers import Tokenizer, decoders, models, pre_tokenizers
+    from transformers import PreTrainedTokenizerFast
+
+    path = tmp_path_factory.mktemp(request.param)
     vocabulary = {letter: at for at, letter in enumerate("_<abcdefghijklmnopqrstuvwxyz,")}
     tokenizer = Tokenizer(models.BPE(vocabulary, [], unk_token="<"))
     tokenizer.pre_tokenizer = pre_tokenizers.Metaspace(replacement="_", prepend_scheme="never")
     tokenizer.decoder = decoders.Metaspace(replacement="_")
     fast = PreTrainedTokenizerFast(tokenizer_object=tokenizer, unk_token="<", pad_token="<")
     fast.save_pretrained(path)
-    torch.manual_seed(0)
-    config = LlamaConfig(
-        vocab_size=len(vocabulary), hidden_size=16, intermediate_size=32, num_hidden_layers=2,
-        num_attention_heads=2, num_key_value_heads=1, initializer_range=0.5,
-    )  # fmt: skip
-    LlamaForCausalLM(config).save_pretrained(path)
+    tiny(request.param, len(vocabulary)).save_pretrained(path)
     return path
 
 
