@@ -76,10 +76,13 @@ def take(motions: ShelfMotions, thing: Cuboid) -> Step:
     driver.suck(True)
     yield from _touch(motions, touch)
     motions.carried = thing
-    yield from motions.line_by(up, settings.touch_speed_m_s)
+    for _ in motions.line_by(up, settings.touch_speed_m_s):
+        if not driver.holds():
+            driver.suck(False)
+            driver.stop()
+        yield
     if not driver.holds():
         motions.carried = None
-        driver.suck(False)
         raise ActionError(ToolFailure.MISSED, "the cups let go as they took up the weight")
 
 
@@ -146,10 +149,10 @@ def carry(
     driver = motions.driver
     for _ in motions.line_by(way, motions.settings.carry_speed_m_s, most_n):
         if not driver.holds():
+            driver.suck(False)
             driver.stop()
         yield
     if not driver.holds():
-        driver.suck(False)
         motions.carried = None
         tip = motions.tip_m()
         raise ActionError(

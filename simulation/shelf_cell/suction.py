@@ -112,7 +112,7 @@ class Cups:
         return names.pop() if flat and facing else ""
 
     def _take_hold(self) -> None:
-        found = self.sealing()
+        found = self.sealing() if self._vacuum.pressure_pa > 0.0 else {}
         if found:
             name = max(found, key=lambda box: len(found[box]))
             self._sealed = np.array(found[name])
@@ -141,6 +141,8 @@ def overloaded(force_n: Floats, torque_nm: Floats, cups_m: Floats, vacuum: Vacuu
     """
     one_n = vacuum.pressure_pa * np.pi * CUP_RADIUS_M**2
     most_n = one_n * len(cups_m)
+    if most_n == 0.0:
+        return True
     pull_n = max(0.0, float(force_n[2]))
     middle_m = float(cups_m.mean())
     bending_nm = float(torque_nm[0]) - middle_m * float(force_n[2])
