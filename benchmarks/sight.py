@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from benchmarks.harness import Row, mean, median, share
 from benchmarks.photographs import labelled_images
 from perception.cable.observation import observe
+from perception.cable.parts import SIGHT
 from perception.cable.plug_ends import find_ends
 from perception.cable.sight.reading import ReadingConfig
 from perception.cable.sight.sight import Sight
@@ -34,7 +35,7 @@ from simulation.table_world import TableWorld
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 
-VERSION = FOLDER / "sight_v1"
+VERSION = FOLDER / SIGHT
 SEED = 78_000_000
 SIZES_PX = ((480, 640), (672, 896), (772, 1032))
 NEAR_WIDTHS = 1.5

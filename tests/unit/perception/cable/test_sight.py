@@ -6,6 +6,7 @@ torch = pytest.importorskip("torch")
 pytest.importorskip("safetensors.torch")
 
 from executive.core.errors import InputError  # noqa: E402  # after the skip
+from perception.cable.parts import SIGHT  # noqa: E402
 from perception.cable.sight.scales import BEST_PX, better_scale  # noqa: E402
 from perception.cable.sight.sight import Sight  # noqa: E402
 from perception.models.sight_input import CHANNELS, MULTIPLE, prepare  # noqa: E402
@@ -16,7 +17,7 @@ ENDS = np.array([[120.0, 90.0], [380.0, 260.0]])
 
 @pytest.fixture(scope="module")
 def sight():
-    return Sight(FOLDER / "sight_v1")
+    return Sight(FOLDER / SIGHT)
 
 
 def _drawn(cable=190.0, table=50.0, width=7, seed=0):
@@ -102,7 +103,7 @@ def test_cable_that_leaves_the_view_has_no_end_there(sight):
 
 def test_the_same_image_gives_the_same_answer(sight):
     image, _ = _drawn()
-    first, again = sight.look(image), Sight(FOLDER / "sight_v1").look(image.copy())
+    first, again = sight.look(image), Sight(FOLDER / SIGHT).look(image.copy())
     assert (first.cable == again.cable).all()
     assert [end.probability for end in first.endpoints] == [
         end.probability for end in again.endpoints
