@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from executive.app.views import scene_frames
 from executive.core.errors import InputError, RecordingError
 from executive.engine.recording.reader import Recording
-from executive.inspector.overlays import picture_of
+from executive.inspector.overlays import Picture, picture_of
 from executive.inspector.shapes import Colour, Shape
 from perception.camera import CameraModel
 from robots.descriptions.yumi import yumi
@@ -43,6 +43,8 @@ COLUMNS, SHARE = 4, 0.5
 FRAMES_HZ, SPEED = 10.0, 4.0
 CODECS = {".webm": "VP80", ".mp4": "mp4v"}
 SIZE_PX, FOCAL_PX = (720, 480), 760.0
+# The lamp of the cell lights what its own camera sees; from elsewhere all is darker.
+BRIGHTENED = 2.0
 # From beyond the table, over the cable, towards the robot.
 EYE_M, TARGET_M = (0.35, 1.25, 1.05), (0.0, -0.08, 0.05)
 
@@ -86,16 +88,29 @@ class _Look:
 
 
 def _looks(run: Recording) -> Iterator[_Look]:
-    """Yield the images in order, each as it was understood when the next one came."""
+    """Yield the images in order, each with all that was made of it before it was forgotten."""
     images = list(run.images())
-    taken = {image.number: image for image in images}
-    ends = {_tick_at(run, image.time_s): None for image in images}
-    last_ticks = [*(tick - 1 for tick in [*ends][1:]), len(run) - 1]
-    for tick in last_ticks:
-        picture = picture_of(run.blackboard(max(tick, 0)))
-        if picture is not None and picture.image in taken:
-            image = run.image(picture.image)
-            yield _Look(image, taken[picture.image].time_s, picture.shapes)
+    begins = [_tick_at(run, image.time_s) for image in images]
+    for image, begin, end in zip(images, begins, [*begins[1:], len(run)], strict=True):
+        picture = _last_picture(run, image.number, begin, end)
+        shapes = () if picture is None else picture.shapes
+        yield _Look(run.image(image.number), image.time_s, shapes)
+
+
+def _last_picture(run: Recording, number: int, begin: int, end: int) -> Picture | None:
+    """Return an image as it was understood at the last tick that still holds it.
+
+    A round that begins anew forgets the one before it, so that tick is searched for.
+    """
+    low, high, found = begin, end - 1, None
+    while low <= high:
+        middle = (low + high) // 2
+        picture = picture_of(run.blackboard(middle))
+        if picture is not None and picture.image == number:
+            found, low = picture, middle + 1
+        else:
+            high = middle - 1
+    return found
 
 
 def _tick_at(run: Recording, time_s: float) -> int:
@@ -193,7 +208,10 @@ def _drawn(
     cable = cable_shapes(frame.cable_m, frame.cable_radius_m, plug_poses(frame.cable_m))
     rendering = renderer.render(join([robot_shapes(yumi(), links), cable]))
     grey = expose(rendering, SensorParameters(speckle=0.0), rng)
-    canvas: ColourImage = np.asarray(cv2.cvtColor(grey, cv2.COLOR_GRAY2BGR), dtype=np.uint8)
+    bright = cv2.convertScaleAbs(grey, alpha=BRIGHTENED)
+    canvas: ColourImage = np.asarray(cv2.cvtColor(bright, cv2.COLOR_GRAY2BGR), dtype=np.uint8)
+    line = np.rint(camera.project(frame.cable_m)).astype(np.int32)
+    cv2.polylines(canvas, [line], isClosed=False, color=WHITE, thickness=2, lineType=cv2.LINE_AA)
     if frame.trace_m is not None:
         points = np.rint(camera.project(frame.trace_m)).astype(np.int32)
         cv2.polylines(canvas, [points], isClosed=False, color=COLOURS["path"], thickness=1)

@@ -1,13 +1,20 @@
 """Make sure that a trace leaves no cable out before anything is claimed about it."""
 
+from dataclasses import replace
 from typing import Annotated
+
+import numpy as np
 
 from executive.core.outcome import failure, success
 from executive.core.skill import In, Port, Skill, SkillRun
 from executive.core.work import Worker
+from perception.cable.covered_ends import CONNECTOR_PX
 from perception.cable.interfaces import CableVision
-from perception.cable.types import Trace
+from perception.cable.types import Points, Trace, TraceEnd
 from perception.camera import CameraFrame
+
+# So many points before its end give the direction in which a trace would go on.
+LEAD_POINTS = 5
 
 
 class AccountForCable(Skill):
@@ -32,8 +39,25 @@ class AccountForCable(Skill):
         share: Annotated[float, In("share that must be accounted for")] = 0.93,
     ) -> SkillRun:
         """Count cable pixels near the trace and away from it."""
-        explained = yield from self._worker.run(self._vision.explained_share, frame.image, trace)
+        whole = with_connectors(trace)
+        explained = yield from self._worker.run(self._vision.explained_share, frame.image, whole)
         if explained < share:
             text = f"the trace accounts for {explained:.0%} of the cable in view"
             return failure("cable.unexplained", text, explained=explained)
         return success(explained=explained)
+
+
+def with_connectors(trace: Trace) -> Trace:
+    """Return a trace that goes on along the connectors: it stops where they begin."""
+    if trace.end is not TraceEnd.ENDPOINT or len(trace.points_px) < 2:
+        return trace
+    first, last = (_beyond(line) for line in (trace.points_px[::-1], trace.points_px))
+    return replace(trace, points_px=np.vstack([first[None], trace.points_px, last[None]]))
+
+
+def _beyond(line: Points) -> Points:
+    """Return the point where a connector at the end of a line ends."""
+    back = line[-min(len(line), LEAD_POINTS)]
+    outwards = (line[-1] - back) / max(float(np.linalg.norm(line[-1] - back)), 1e-9)
+    end: Points = line[-1] + CONNECTOR_PX * outwards
+    return end

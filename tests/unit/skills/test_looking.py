@@ -4,8 +4,8 @@ from cell_fakes import finished, frame, overhand
 
 from executive.core.work import InlineWorker
 from perception.cable.orientation import reversed_crossings, reversed_trace
-from perception.cable.types import Knot
-from skills.cable.account_for_cable import AccountForCable
+from perception.cable.types import Knot, Trace, TraceEnd
+from skills.cable.account_for_cable import AccountForCable, with_connectors
 from skills.cable.detect_endpoints import DetectEndpoints
 from skills.cable.observe_workspace import ObserveWorkspace
 from skills.cable.orient_trace import OrientTrace
@@ -74,3 +74,11 @@ def test_no_end_and_no_light_have_reasons():
     assert outcome.reason.code == "endpoints.none"
     outcome, _ = finished(ObserveWorkspace(DarkCamera()), {})
     assert outcome.reason.code == "camera.dark"
+
+
+def test_connectors_belong_to_a_trace_that_has_come_to_an_end_and_to_no_other():
+    line = np.column_stack([np.linspace(100.0, 300.0, 50), np.full(50, 200.0)])
+    whole = with_connectors(Trace(line, TraceEnd.ENDPOINT, 0.9))
+    assert np.allclose(whole.points_px[[0, -1]], [(60.0, 200.0), (340.0, 200.0)])
+    lost = Trace(line, TraceEnd.LOST, 0.9)
+    assert with_connectors(lost) is lost
