@@ -99,13 +99,15 @@ def _write_rerun(recording: Path, file: Path) -> None:
 def _write_pictures(recording: Path, sheet: Path | None, video: Path | None) -> None:
     if sheet is None and video is None:
         return
-    from executive.app.pictures import write_sheet, write_video
-
     with recording_named_by_the_user():
         if sheet is not None:
+            from executive.inspector.sheet import write_sheet
+
             write_sheet(recording, sheet)
             chatter().print(f"{sheet}: all looks of the run", soft_wrap=True)
         if video is not None:
+            from executive.app.films import write_video
+
             write_video(recording, video)
             chatter().print(f"{video}: the cell, four times as fast", soft_wrap=True)
 

@@ -9,8 +9,9 @@ import cv2
 import numpy as np
 import pytest
 
-from executive.app.pictures import oblique_camera, plug_poses, write_sheet, write_video
+from executive.app.films import oblique_camera, plug_poses, write_video
 from executive.core.errors import InputError, RecordingError
+from executive.inspector.sheet import write_sheet
 
 CELLWRIGHT = str(Path(sys.executable).with_name("cellwright"))
 
