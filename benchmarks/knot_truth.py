@@ -9,8 +9,8 @@ looked for. Where they differ, which few knots allow, either is right.
 Who sees the cable does not know in which piece somebody has tied. Where the rest of the cable
 lies on the knot, the same knot may be made with its crossings instead. So the whole cable is
 asked, too: which first part is knotted and stays so, however much more of the cable is added,
-and from where on, likewise. In one of 40 scenes this names another crossing, and is right as
-well.
+and from where on, likewise. In one of a hundred scenes this names another crossing, and is
+right as well.
 """
 
 from collections.abc import Sequence
