@@ -6,7 +6,7 @@ shows, as in the thesis's simulations (section 7.4). Nothing else of the scene i
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import partial
 from typing import Protocol, TypeVar
 
@@ -83,8 +83,8 @@ class Trial:
     actions: int
     stuck: bool = False
     refusals: int = 0
-    belief_s: tuple[float, ...] = ()
-    choice_s: tuple[float, ...] = ()
+    belief_s: tuple[float, ...] = field(default=(), compare=False)
+    choice_s: tuple[float, ...] = field(default=(), compare=False)
 
 
 class SearchedShelf(Protocol):
@@ -132,7 +132,7 @@ class Searcher:
         self.original, self.contacts = OriginalScene(), Contacts()
         self.been: list[tuple[str, Box]] = []
         policy = ReductionWithClearing if way.policy == "clearing" else DistributionAreaReduction
-        self._reduction = policy(self.shelf, self.caster, way.reach)
+        self.policy = policy(self.shelf, self.caster, way.reach)
 
     def shows(self) -> bool:
         """Ask the world whether the target counts as found."""
@@ -151,7 +151,7 @@ class Searcher:
         if self.way.policy == "ahead":
             return self._look_ahead(view, seen)
         occupancy = self.occupancy(view, seen)
-        return self._reduction.choose(occupancy, view, seen, self.contacts.footprints)
+        return self.policy.choose(occupancy, view, seen, self.contacts.footprints)
 
     def occupancy(self, view: ShelfView, seen: Seen) -> Floats:
         """Return the occupancy distribution in the image."""
@@ -223,9 +223,9 @@ def poses_of(scene: Scene) -> HiddenPoses:
     return HiddenPoses(size_m, scene.shelf, BoxCaster(front_camera(scene.shelf)))
 
 
-def search(scene: Scene, way: Way, poses: HiddenPoses | None = None) -> Trial:
+def search(scene: Scene, way: Way | None = None, poses: HiddenPoses | None = None) -> Trial:
     """Search with at most 2 N actions (thesis, section 5.2), in a world without physics."""
-    searcher, refusals = Searcher(scene, way, poses=poses), 0
+    searcher, refusals = Searcher(scene, way or Way(), poses=poses), 0
     beliefs, choices = list[float](), list[float]()
     limit = 2 * len(scene.names)
     for actions in range(limit + 1):

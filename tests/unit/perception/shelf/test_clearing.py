@@ -1,8 +1,9 @@
 """A search that is stuck clears its way, and one that is not goes on as it would."""
 
 import numpy as np
-from shelf_search import Found, Searcher, Way, drawn_scenes, search
+from shelf_search import drawn_scenes
 
+from benchmarks.search_trials import Searcher, Trial, Way, search
 from perception.shelf.planning.clearing import ReductionWithClearing
 from perception.shelf.planning.dar import DistributionAreaReduction
 from perception.shelf.planning.room import Reach
@@ -38,7 +39,7 @@ def blocked_scene():
 
 def test_what_stands_in_the_way_is_moved_out_of_it():
     labels = []
-    searcher = Searcher(blocked_scene(), Way(clearing=True))
+    searcher = Searcher(blocked_scene(), Way(policy="clearing"))
     published = DistributionAreaReduction(searcher.shelf, searcher.caster, Reach())
     for stuck in (True, False):
         view, seen = searcher.look()
@@ -58,13 +59,13 @@ def test_where_no_move_helps_it_says_so():
     behind = Box(0.4, 0.25, (0.04, 0.04, 0.06))
     names = ("a", "b", "c", "d", "target")
     scene = Scene(Shelf(), names, (*row, behind), "target")
-    found = search(scene, Way(clearing=True, reach=Reach(suction=False)))
-    assert found == Found(False, 0, stuck=True)
+    found = search(scene, Way(policy="clearing", reach=Reach(suction=False)))
+    assert found == Trial(False, 0, stuck=True)
 
 
 def test_searches_that_got_stuck_are_solved():
     scenes = drawn_scenes("pharmacy", SceneRules(15), (5, 17, 22, 24))
     plain = [search(scene) for scene in scenes]
-    cleared = [search(scene, Way(clearing=True)) for scene in scenes]
+    cleared = [search(scene, Way(policy="clearing")) for scene in scenes]
     assert sum(found.stuck for found in plain) >= 2
     assert all(found.success for found in cleared)

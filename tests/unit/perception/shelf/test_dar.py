@@ -2,8 +2,9 @@
 
 import numpy as np
 import pytest
-from shelf_search import Searcher, Way, drawn_scenes
+from shelf_search import drawn_scenes
 
+from benchmarks.search_trials import Searcher, Way
 from perception.shelf.planning.contacts import Contacts, push_sign
 from perception.shelf.planning.moves import Place
 from perception.shelf.planning.options import options

@@ -2,8 +2,9 @@
 
 import numpy as np
 import pytest
-from shelf_search import Searcher, Way, drawn_scenes
+from shelf_search import drawn_scenes
 
+from benchmarks.search_trials import Searcher, Way
 from perception.shelf.casting import BoxCaster
 from perception.shelf.hidden_poses import HiddenPoses, PoseBelief, PoseRules
 from perception.shelf.sightings import sightings

@@ -2,8 +2,9 @@
 
 import numpy as np
 import pytest
-from shelf_search import Way, drawn_scenes, guessed_affinity, search
+from shelf_search import drawn_scenes, guessed_affinity
 
+from benchmarks.search_trials import Way, search
 from simulation.shelf.scenes import SceneRules
 from simulation.shelf.taxonomy import shipped_domain
 
