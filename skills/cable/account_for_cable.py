@@ -15,6 +15,7 @@ from perception.camera import CameraFrame
 
 # So many points before its end give the direction in which a trace would go on.
 LEAD_POINTS = 5
+STEP_PX = 4.0
 
 
 class AccountForCable(Skill):
@@ -36,7 +37,7 @@ class AccountForCable(Skill):
         self,
         frame: Annotated[CameraFrame, In("overhead frame")],
         trace: Annotated[Trace, In("path of the cable")],
-        share: Annotated[float, In("share that must be accounted for")] = 0.93,
+        share: Annotated[float, In("share that must be accounted for")] = 0.96,
     ) -> SkillRun:
         """Count cable pixels near the trace and away from it."""
         whole = with_connectors(trace)
@@ -52,12 +53,13 @@ def with_connectors(trace: Trace) -> Trace:
     if trace.end is not TraceEnd.ENDPOINT or len(trace.points_px) < 2:
         return trace
     first, last = (_beyond(line) for line in (trace.points_px[::-1], trace.points_px))
-    return replace(trace, points_px=np.vstack([first[None], trace.points_px, last[None]]))
+    return replace(trace, points_px=np.vstack([first[::-1], trace.points_px, last]))
 
 
 def _beyond(line: Points) -> Points:
-    """Return the point where a connector at the end of a line ends."""
+    """Return points along a connector at the end of a line, shape (K, 2)."""
     back = line[-min(len(line), LEAD_POINTS)]
     outwards = (line[-1] - back) / max(float(np.linalg.norm(line[-1] - back)), 1e-9)
-    end: Points = line[-1] + CONNECTOR_PX * outwards
-    return end
+    along_px = np.arange(STEP_PX, CONNECTOR_PX + STEP_PX, STEP_PX)
+    points: Points = line[-1] + along_px[:, None] * outwards
+    return points
