@@ -5,6 +5,7 @@ import threading
 
 import numpy as np
 import pytest
+from shelf_rigs import Rig, heavy
 
 from executive.core.errors import DeviceError, InputError
 from executive.core.world import Cell
@@ -12,7 +13,6 @@ from perception.rgbd import RgbdCamera
 from perception.shelf.types import Shelf
 from robots.shelf_tool import VIEWPOINTS, LookFrom, PutElsewhere, ShelfTool, ToolFailure
 from simulation.shelf_cell.cell import ShelfCell
-from tests.unit.simulation.shelf_cell.shelf_rigs import Rig, heavy
 
 SCENARIO = {"count": 8}
 

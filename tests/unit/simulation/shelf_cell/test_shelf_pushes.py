@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
+from shelf_rigs import Rig, heavy
 
 from robots.shelf_arm.settings import ShelfArmSettings
 from robots.shelf_tool import PushAlong, ToolFailure
-from tests.unit.simulation.shelf_cell.shelf_rigs import Rig, heavy
 
 BOX_M = (0.06, 0.06, 0.12)
 

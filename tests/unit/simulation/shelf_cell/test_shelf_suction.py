@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
+from shelf_rigs import Rig, heavy
 
 from robots.shelf_tool import Cuboid, PutElsewhere, TakeOut, ToolFailure
 from simulation.shelf_cell.config import ToolConfig
 from simulation.shelf_cell.suction import Vacuum, overloaded
-from tests.unit.simulation.shelf_cell.shelf_rigs import Rig, heavy
 
 BOX_M = (0.06, 0.06, 0.12)
 CUPS_M = np.array([-0.024, -0.008, 0.008, 0.024])

@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
+from shelf_rigs import Rig, heavy
 
 from robots.shelf_tool import LookFrom, PushAlong
 from simulation.shelf_cell.cell import ShelfCell
-from tests.unit.simulation.shelf_cell.shelf_rigs import Rig, heavy
 
 SCENARIO = {"count": 12}
 
