@@ -18,10 +18,11 @@ from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter, gaussian_filter1d
 
 from perception.camera import GreyImage
-from simulation.cable.configurations import ConfigurationRules, starting_configuration
+from simulation.cable.configurations import starting_configuration
 from simulation.cable.knots import KnotName
 from simulation.cable.layout import Area
 from simulation.cable.parameters import RodParameters
+from simulation.cable.rules import ConfigurationRules
 
 Floats = NDArray[np.float64]
 

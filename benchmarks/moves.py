@@ -24,11 +24,12 @@ from perception.cable.planning import (
     plan_moves,
 )
 from perception.cable.topology import Strand, curve_crossings
-from simulation.cable.configurations import ConfigurationRules, starting_configuration
+from simulation.cable.configurations import starting_configuration
 from simulation.cable.knots import KNOT_NAMES, KnotName
 from simulation.cable.layout import Area
 from simulation.cable.parameters import RodParameters
 from simulation.cable.rod import Rod
+from simulation.cable.rules import ConfigurationRules
 
 Floats = NDArray[np.float64]
 

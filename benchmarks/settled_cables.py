@@ -14,11 +14,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from executive.core.errors import InputError
-from simulation.cable.configurations import ConfigurationRules, starting_configuration
+from simulation.cable.configurations import starting_configuration
 from simulation.cable.knots import TEMPLATES, KnotName
 from simulation.cable.layout import Area
 from simulation.cable.parameters import RodParameters
 from simulation.cable.rod import Rod
+from simulation.cable.rules import ConfigurationRules
 
 Floats = NDArray[np.float64]
 
