@@ -154,4 +154,3 @@ def _fitting(lines: Sequence[str], wide: float, high: float) -> float:
     unit = ImageFont.load_default(100.0)
     longest = max(unit.getlength(line) for line in lines)
     return min(100.0 * wide / longest, high / (1.2 * len(lines)))
-
