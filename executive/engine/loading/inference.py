@@ -164,7 +164,7 @@ def _field_type(owner: Any, field: str) -> Any:
     if dataclasses.is_dataclass(kind):
         hints = typing.get_type_hints(kind)
         if field in hints:
-            return hints[field]
+            return _without_class_var(hints[field])
     member = getattr(kind, field, None)
     if isinstance(member, property):
         return typing.get_type_hints(member.fget).get("return", Any) if member.fget else Any
@@ -172,6 +172,13 @@ def _field_type(owner: Any, field: str) -> Any:
     if dataclasses.is_dataclass(kind):
         known = [f.name for f in dataclasses.fields(kind)]
     raise InputError(f"{kind.__name__} has no field {field!r}; {closest(field, known)}")
+
+
+def _without_class_var(hint: Any) -> Any:
+    """Return the type of a field that belongs to the class, or the hint as it is."""
+    if typing.get_origin(hint) is typing.ClassVar:
+        return typing.get_args(hint)[0]
+    return hint
 
 
 def _check_equality(kind: Any, literal: ast.expr, other: Any) -> None:

@@ -1,6 +1,7 @@
 """The two actions of a search: a push along the shelf, and a change of place (thesis, 5.2)."""
 
 from dataclasses import dataclass
+from typing import ClassVar, Literal
 
 
 @dataclass(frozen=True, slots=True)
@@ -12,6 +13,7 @@ class Push:
         shift_m: How far along x; negative against it.
     """
 
+    kind: ClassVar[Literal["push"]] = "push"
     label: str
     shift_m: float
 
@@ -26,6 +28,7 @@ class Place:
         y_m: Where its centre goes, into the shelf.
     """
 
+    kind: ClassVar[Literal["place"]] = "place"
     label: str
     x_m: float
     y_m: float

@@ -38,6 +38,8 @@ VALUES = {
     [
         ('part.colour == "red"', True, "bool"),
         ('part.colour in ["green", "blue"]', False, "bool"),
+        ("part.kind == 'part'", True, "bool"),
+        ("part.kind", "part", "str"),
         ("size(parts) > 0 and x < 0.8", True, "bool"),
         ("not ok or n >= 3", True, "bool"),
         ("0 < x < 1", True, "bool"),

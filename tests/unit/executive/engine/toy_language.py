@@ -24,6 +24,7 @@ class Colour(StrEnum):
 class Part:
     """A part on a toy table."""
 
+    kind: ClassVar[str] = "part"
     mass_kg: float
     colour: Colour
     holes: tuple[int, ...] = ()

@@ -153,6 +153,27 @@ def test_the_way_out_of_an_object_is_freed():
     assert freeing_move(situation(boxes[:1], boxes[0]), "box 0") is None
 
 
+def test_what_is_shut_in_before_an_object_is_freed_first_and_never_brought_back():
+    """By pushes alone the blocker moves only once a neighbour of it has made room."""
+    behind = Box(0.4, 0.3, SMALL)
+    row = [Box(x_m, 0.12, WIDE) for x_m in (0.277, 0.4, 0.523)]
+    pushes = Reach(blade_m=0.0, suction=False)
+    made = situation([behind, *row], behind, pushes, [FIXED, ANYHOW, ANYHOW, ANYHOW])
+    been = []
+    for _ in range(6):
+        move = freeing_move(replace(made, been=tuple(been)), "box 0")
+        if move is None:
+            break
+        index = made.labels.index(move.label)
+        boxes = list(made.boxes)
+        been.append((move.label, boxes[index]))
+        boxes[index] = boxes[index].at(boxes[index].x_m + move.shift_m, boxes[index].y_m)
+        made = replace(made, boxes=tuple(boxes))
+    assert been[0][0] != "box 2"
+    rows = footprints(list(made.boxes))
+    assert way_out(rows[0], rows[1:])
+
+
 def test_corners_and_footprints_agree():
     boxes, _ = drawn(1)
     low_m, high_m = corners(boxes)
