@@ -3,6 +3,7 @@
 import logging
 import os
 import secrets
+import signal
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -100,6 +101,8 @@ def _serve(
         console.print("Ctrl-C ends it", style="bright_black")
         # Ticks of missions come before requests: what is started later by others keeps its rank.
         os.setpriority(os.PRIO_PROCESS, _this_thread(), 5)
+        # A manager of services ends them by SIGTERM, which is to end this one in order as well.
+        signal.signal(signal.SIGTERM, signal.default_int_handler)
         with suppress(KeyboardInterrupt):
             server.serve()
 

@@ -140,7 +140,7 @@ def options_of(*command: str) -> set[str]:
 def test_commands_and_their_options_exist():
     spoken: dict[tuple[str, ...], set[str]] = {}
     for line in (line for page in PAGES for line in commands(page)):
-        found = re.match(rf"(?:\S*/)?cellwright ((?:{GROUPS})?[a-z-]+)\b(.*)", line)
+        found = re.match(rf"(?:\S*/)?cellwright (?:--path \S+ )?((?:{GROUPS})?[a-z-]+)\b(.*)", line)
         if found:
             # What follows `campaign` is the file of one that is run, if it is no other word.
             names = tuple(found[1].split()) if found[1] != "campaign" else ("campaign", "run")
