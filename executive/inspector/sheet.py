@@ -26,8 +26,8 @@ COLOURS: dict[Colour, tuple[int, int, int]] = {
 }
 WHITE = (255, 255, 255)
 FONT = cv2.FONT_HERSHEY_SIMPLEX
-# A sheet has so many looks in a row, each at this share of its size.
-COLUMNS, SHARE = 4, 0.5
+# A sheet has so many looks in a row, each at this share of its size, but as wide as this [px].
+COLUMNS, SHARE, LEAST_WIDTH = 4, 0.5, 320
 
 
 def write_sheet(recording: Path, file: Path) -> None:
@@ -108,9 +108,11 @@ def _captioned(look: _Look) -> ColourImage:
     canvas: ColourImage = np.asarray(grey, dtype=np.uint8).copy()
     for shape in look.shapes:
         _draw(canvas, shape)
-    cv2.putText(canvas, f"{look.time_s:.1f} s", (12, 36), FONT, 1.0, WHITE, 2, cv2.LINE_AA)
-    small = cv2.resize(canvas, None, fx=SHARE, fy=SHARE, interpolation=cv2.INTER_AREA)
-    return np.asarray(small, dtype=np.uint8)
+    share = max(SHARE, LEAST_WIDTH / canvas.shape[1])
+    way = cv2.INTER_AREA if share < 1.0 else cv2.INTER_NEAREST
+    tile = cv2.resize(canvas, None, fx=share, fy=share, interpolation=way)
+    cv2.putText(tile, f"{look.time_s:.1f} s", (6, 18), FONT, 0.5, WHITE, 1, cv2.LINE_AA)
+    return np.asarray(tile, dtype=np.uint8)
 
 
 def _draw(canvas: ColourImage, shape: Shape) -> None:
