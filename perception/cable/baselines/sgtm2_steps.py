@@ -8,18 +8,18 @@ import time
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from perception.cable.baselines.one_trace import first_trace
 from perception.cable.baselines.sgtm2 import Detector, first_met
+from perception.cable.baselines.sight_of_parts import SightOfParts
 from perception.cable.grasp_points import GraspConfig, held_strand
 from perception.cable.interfaces import CableVision, Tracer
 from perception.cable.knots import grasp_policy, held_knot
-from perception.cable.types import CableScene, Crossing, Endpoint, Knot, Points, Trace
+from perception.cable.types import CableScene, Crossing, Knot, Points, Trace
 from perception.camera import GreyImage
 
 
-class Sgtm2Vision:
+class Sgtm2Vision(SightOfParts):
     """Implements `CableVision` as SGTM 2.0 sees.
 
     Args:
@@ -36,34 +36,8 @@ class Sgtm2Vision:
         detector: Detector,
         grasps: GraspConfig | None = None,
     ) -> None:
-        self._parts, self._tracer, self._detector = parts, tracer, detector
-        self._grasps = grasps or GraspConfig()
-
-    def cable_pixels(self, image: GreyImage) -> NDArray[np.bool_]:
-        """Say which pixels show cable or connector, shape (height, width)."""
-        return self._parts.cable_pixels(image)
-
-    def pieces(self, image: GreyImage) -> tuple[Points, ...]:
-        """Return unbranched pieces of centre line, longest first, shape (N, 2) each."""
-        return self._parts.pieces(image)
-
-    def endpoints(self, image: GreyImage) -> tuple[Endpoint, ...]:
-        """Find the ends of cables."""
-        return self._parts.endpoints(image)
-
-    def start_points(self, image: GreyImage, endpoint: Endpoint) -> Points | None:
-        """Follow the cable for about 96 px from an end, shape (N, 2); None when unclear."""
-        return self._parts.start_points(image, endpoint)
-
-    def trace(
-        self, image: GreyImage, start_px: Points, endpoints: Sequence[Endpoint]
-    ) -> Trace | None:
-        """Follow one cable; see `Tracer.trace`."""
-        return self._tracer.trace(image, start_px, endpoints)
-
-    def explained_share(self, image: GreyImage, trace: Trace) -> float:
-        """Return the share of cable pixels in view that a trace accounts for, in [0, 1]."""
-        return self._parts.explained_share(image, trace)
+        super().__init__(parts, tracer)
+        self._detector, self._grasps = detector, grasps or GraspConfig()
 
     def crossings(self, image: GreyImage, traces: Sequence[Trace]) -> tuple[Crossing, ...]:
         """Return for each trace the place that looks like a knot and that it comes to first."""

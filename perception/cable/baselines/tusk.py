@@ -9,15 +9,13 @@ import time
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-import numpy as np
-from numpy.typing import NDArray
-
 from perception.cable.baselines.one_trace import first_trace
+from perception.cable.baselines.sight_of_parts import SightOfParts
 from perception.cable.grasp_points import CablePixels, GraspConfig, held_strand
 from perception.cable.interfaces import CableVision, CrossingClassifier, Tracer
 from perception.cable.knots import grasp_policy, held_knot, visits_of
 from perception.cable.topology.rule import Visit, knot_intervals, uncancelled_intervals
-from perception.cable.types import CableScene, Crossing, Endpoint, Knot, Points, Trace, TraceEnd
+from perception.cable.types import CableScene, Crossing, Knot, Points, Trace, TraceEnd
 from perception.cable.width import width_under
 from perception.camera import GreyImage
 
@@ -37,7 +35,7 @@ class TuskConfig:
     grasps: GraspConfig = field(default_factory=lambda: GraspConfig(policy="tusk"))
 
 
-class TuskVision:
+class TuskVision(SightOfParts):
     """Implements `CableVision` as the thesis does.
 
     Args:
@@ -54,34 +52,8 @@ class TuskVision:
         classifier: CrossingClassifier,
         config: TuskConfig | None = None,
     ) -> None:
-        self._parts, self._tracer, self._classifier = parts, tracer, classifier
-        self._config = config or TuskConfig()
-
-    def cable_pixels(self, image: GreyImage) -> NDArray[np.bool_]:
-        """Say which pixels show cable or connector, shape (height, width)."""
-        return self._parts.cable_pixels(image)
-
-    def pieces(self, image: GreyImage) -> tuple[Points, ...]:
-        """Return unbranched pieces of centre line, longest first, shape (N, 2) each."""
-        return self._parts.pieces(image)
-
-    def endpoints(self, image: GreyImage) -> tuple[Endpoint, ...]:
-        """Find the ends of cables."""
-        return self._parts.endpoints(image)
-
-    def start_points(self, image: GreyImage, endpoint: Endpoint) -> Points | None:
-        """Follow the cable for about 96 px from an end, shape (N, 2); None when unclear."""
-        return self._parts.start_points(image, endpoint)
-
-    def trace(
-        self, image: GreyImage, start_px: Points, endpoints: Sequence[Endpoint]
-    ) -> Trace | None:
-        """Follow one cable; see `Tracer.trace`."""
-        return self._tracer.trace(image, start_px, endpoints)
-
-    def explained_share(self, image: GreyImage, trace: Trace) -> float:
-        """Return the share of cable pixels in view that a trace accounts for, in [0, 1]."""
-        return self._parts.explained_share(image, trace)
+        super().__init__(parts, tracer)
+        self._classifier, self._config = classifier, config or TuskConfig()
 
     def crossings(self, image: GreyImage, traces: Sequence[Trace]) -> tuple[Crossing, ...]:
         """Classify all crossings; see `CrossingClassifier.classify`."""
