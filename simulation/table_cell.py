@@ -1,6 +1,5 @@
 """The simulated table cell: a YuMi, a table, an overhead camera and one cable."""
 
-import threading
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
@@ -27,6 +26,7 @@ from simulation.table_cell_config import (
 )
 from simulation.table_setup import planning_scene, rod_parameters
 from simulation.table_world import TableWorld
+from simulation.turns import Turns
 from simulation.unreliable_arms import ArmFaults, UnreliableArms
 
 Floats = NDArray[np.float64]
@@ -79,10 +79,7 @@ class TableCell:
             np.random.default_rng(faults_seed),
         )
         self.clock = SimClock(self)
-        # One thread at a time lets the world go on; who makes an emergency stop goes first.
-        self._stepping = threading.RLock()
-        self._may_step = threading.Event()
-        self._may_step.set()
+        self._turns = Turns()
         self.devices: Mapping[str, object] = {
             "clock": self.clock,
             "camera": self.camera,
@@ -108,13 +105,12 @@ class TableCell:
         """Let time pass and record it; what `clock.sleep_until` does."""
         end = self.steps + steps
         while self.steps < end:
-            self._may_step.wait()
-            with self._stepping:
+            with self._turns.step():
                 self._step(end)
 
     def drain_streams(self) -> Iterable[StreamMessage]:
         """Return joint states and scenes since the last call, in the order of time."""
-        with self._stepping:
+        with self._turns.look():
             messages = [*self._joint_states.drain(), *self._scene.drain()]
         return sorted(messages, key=lambda message: message.time_s)
 
@@ -129,14 +125,10 @@ class TableCell:
         Safe from any thread, whatever another one does meanwhile: this one takes the world on
         until the arms rest. They take no command after that.
         """
-        self._may_step.clear()
-        try:
-            with self._stepping:
-                self.driver.emergency_stop()
-                while not self.driver.at_rest:
-                    self._step(self.steps + 1)
-        finally:
-            self._may_step.set()
+        with self._turns.first():
+            self.driver.emergency_stop()
+            while not self.driver.at_rest:
+                self._step(self.steps + 1)
 
     def close(self) -> None:
         """Shut the physics server."""

@@ -1,6 +1,5 @@
 """The shelf cell with physics: a Kinova with a bluction tool before a shelf full of boxes."""
 
-import threading
 from collections.abc import Iterable, Mapping
 
 import numpy as np
@@ -27,6 +26,7 @@ from simulation.shelf_cell.truth import ShelfTruth, shelf_truth
 from simulation.shelf_cell.world import ShelfWorld
 from simulation.streams import Stream
 from simulation.table_cell_config import read_settings
+from simulation.turns import Turns
 
 JOINTS = kinova_joint_names(len(place.HOME_RAD))
 # The blade goes in at least that far along an object's side [m].
@@ -101,10 +101,7 @@ class ShelfCell:
             camera_rng,
         )
         self.clock = SimClock(self)
-        # One thread at a time lets the world go on; who makes an emergency stop goes first.
-        self._stepping = threading.RLock()
-        self._may_step = threading.Event()
-        self._may_step.set()
+        self._turns = Turns()
         self.devices: Mapping[str, object] = {
             "clock": self.clock,
             "camera": self.camera,
@@ -136,14 +133,13 @@ class ShelfCell:
     def advance(self, steps: int) -> None:
         """Let time pass and record it; what `clock.sleep_until` does."""
         for _ in range(steps):
-            self._may_step.wait()
-            with self._stepping:
+            with self._turns.step():
                 self.tool.poll()
                 self._step()
 
     def drain_streams(self) -> Iterable[StreamMessage]:
         """Return joint states and scenes since the last call, in the order of time."""
-        with self._stepping:
+        with self._turns.look():
             messages = [*self._joint_states.drain(), *self._scenes.drain()]
         return sorted(messages, key=lambda message: message.time_s)
 
@@ -159,15 +155,11 @@ class ShelfCell:
         Safe from any thread, whatever another one does meanwhile: this one takes the world on
         until the arm rests. It takes no command after that.
         """
-        self._may_step.clear()
-        try:
-            with self._stepping:
-                self.driver.emergency_stop()
-                self.tool.give_up()
-                while not self.driver.at_rest:
-                    self._step()
-        finally:
-            self._may_step.set()
+        with self._turns.first():
+            self.driver.emergency_stop()
+            self.tool.give_up()
+            while not self.driver.at_rest:
+                self._step()
 
     def close(self) -> None:
         """Shut the physics server."""
