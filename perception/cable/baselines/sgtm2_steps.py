@@ -4,18 +4,16 @@ It knows no crossings. Each place that looks like a dense knot and that a trace 
 carried as one: from where the trace enters it, as if below, to where it leaves it, as if on top.
 """
 
-import time
 from collections.abc import Sequence
 
 import numpy as np
 
-from perception.cable.baselines.one_trace import first_trace
 from perception.cable.baselines.sgtm2 import Detector, first_met
 from perception.cable.baselines.sight_of_parts import SightOfParts
 from perception.cable.grasp_points import GraspConfig, held_strand
 from perception.cable.interfaces import CableVision, Tracer
 from perception.cable.knots import grasp_policy, held_knot
-from perception.cable.types import CableScene, Crossing, Knot, Points, Trace
+from perception.cable.types import Crossing, Knot, Trace
 from perception.camera import GreyImage
 
 
@@ -71,25 +69,6 @@ class Sgtm2Vision(SightOfParts):
         """Return the detector's belief in the surest place, 0 where there is none."""
         del traces
         return max((crossing.probability for crossing in crossings), default=0.0)
-
-    def scene(self, image: GreyImage, start_px: Points | None = None) -> CableScene:
-        """Do all steps on one image, from a given start or from the first end that is clear."""
-        began_s = time.perf_counter()
-        endpoints = self.endpoints(image)
-        if start_px is None:
-            traces = first_trace(self._parts, self._tracer, image, endpoints)
-        else:
-            trace = self.trace(image, start_px, endpoints)
-            traces = () if trace is None else (trace,)
-        crossings = self.crossings(image, traces)
-        return CableScene(
-            traces=traces,
-            endpoints=endpoints,
-            crossings=crossings,
-            knots=self.knots(image, traces, crossings),
-            knotted_probability=self.knotted_probability(traces, crossings),
-            seconds=time.perf_counter() - began_s,
-        )
 
 
 def _interval(crossing: Crossing) -> tuple[float, float]:

@@ -1,17 +1,20 @@
 """What baselines have in common: parts see the cable, and a tracer of one's choice follows it."""
 
+import time
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
+from perception.cable.baselines.one_trace import first_trace
 from perception.cable.interfaces import CableVision, Tracer
-from perception.cable.types import Endpoint, Points, Trace
+from perception.cable.types import CableScene, Crossing, Endpoint, Knot, Points, Trace
 from perception.camera import GreyImage
 
 
-class SightOfParts:
-    """The half of `CableVision` that comes before crossings.
+class SightOfParts(ABC):
+    """All of `CableVision` but what a baseline makes of crossings.
 
     Args:
         parts: Sees ends and cable pixels.
@@ -46,3 +49,36 @@ class SightOfParts:
     def explained_share(self, image: GreyImage, trace: Trace) -> float:
         """Return the share of cable pixels in view that a trace accounts for, in [0, 1]."""
         return self._parts.explained_share(image, trace)
+
+    @abstractmethod
+    def crossings(self, image: GreyImage, traces: Sequence[Trace]) -> tuple[Crossing, ...]:
+        """Return where traces cross; see `CableVision.crossings`."""
+
+    @abstractmethod
+    def knots(
+        self, image: GreyImage, traces: Sequence[Trace], crossings: Sequence[Crossing]
+    ) -> tuple[Knot, ...]:
+        """Return what is taken for knots, and where to hold them."""
+
+    @abstractmethod
+    def knotted_probability(self, traces: Sequence[Trace], crossings: Sequence[Crossing]) -> float:
+        """Return the belief that the cable is knotted, in [0, 1]."""
+
+    def scene(self, image: GreyImage, start_px: Points | None = None) -> CableScene:
+        """Do all steps on one image, from a given start or from the first end that is clear."""
+        began_s = time.perf_counter()
+        endpoints = self.endpoints(image)
+        if start_px is None:
+            traces = first_trace(self._parts, self._tracer, image, endpoints)
+        else:
+            trace = self.trace(image, start_px, endpoints)
+            traces = () if trace is None else (trace,)
+        crossings = self.crossings(image, traces)
+        return CableScene(
+            traces=traces,
+            endpoints=endpoints,
+            crossings=crossings,
+            knots=self.knots(image, traces, crossings),
+            knotted_probability=self.knotted_probability(traces, crossings),
+            seconds=time.perf_counter() - began_s,
+        )

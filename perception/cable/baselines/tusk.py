@@ -5,17 +5,15 @@ knot rule. Which tracer, and whether crossings are cancelled, can be chosen: wit
 tracer, or without cancelling, it is one of the thesis's ablations.
 """
 
-import time
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-from perception.cable.baselines.one_trace import first_trace
 from perception.cable.baselines.sight_of_parts import SightOfParts
 from perception.cable.grasp_points import CablePixels, GraspConfig, held_strand
 from perception.cable.interfaces import CableVision, CrossingClassifier, Tracer
 from perception.cable.knots import grasp_policy, held_knot, visits_of
 from perception.cable.topology.rule import Visit, knot_intervals, uncancelled_intervals
-from perception.cable.types import CableScene, Crossing, Knot, Points, Trace, TraceEnd
+from perception.cable.types import Crossing, Knot, Trace, TraceEnd
 from perception.cable.width import width_under
 from perception.camera import GreyImage
 
@@ -82,25 +80,6 @@ class TuskVision(SightOfParts):
         sure = [c for k in range(len(traces)) for *_, c in self._potential_knots(k, crossings)]
         whole = any(trace.end is TraceEnd.ENDPOINT for trace in traces)
         return max(sure, default=0.0 if whole else NOTHING_KNOWN)
-
-    def scene(self, image: GreyImage, start_px: Points | None = None) -> CableScene:
-        """Do all steps on one image, from a given start or from the first end that is clear."""
-        began_s = time.perf_counter()
-        endpoints = self.endpoints(image)
-        if start_px is None:
-            traces = first_trace(self._parts, self._tracer, image, endpoints)
-        else:
-            trace = self.trace(image, start_px, endpoints)
-            traces = () if trace is None else (trace,)
-        crossings = self.crossings(image, traces)
-        return CableScene(
-            traces=traces,
-            endpoints=endpoints,
-            crossings=crossings,
-            knots=self.knots(image, traces, crossings),
-            knotted_probability=self.knotted_probability(traces, crossings),
-            seconds=time.perf_counter() - began_s,
-        )
 
     def _potential_knots(
         self, index: int, crossings: Sequence[Crossing]
