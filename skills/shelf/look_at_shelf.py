@@ -2,6 +2,8 @@
 
 from typing import Annotated
 
+import numpy as np
+
 from executive.core.outcome import failure, success
 from executive.core.skill import In, Port, SkillRun
 from perception.rgbd import RgbdCamera, RgbdFrame
@@ -41,7 +43,7 @@ class LookAtShelf(ToolSkill):
         if result.failure is not None:
             return failed(result, viewpoint)
         frame = self._camera.capture()
-        share = float((frame.depth_m == frame.depth_m).mean())
+        share = float((~np.isnan(frame.depth_m)).mean())
         if share < LEAST_DEPTH:
             return failure("camera.blind", "hardly any pixel has depth", depth_share=share)
         return success(frame=frame)

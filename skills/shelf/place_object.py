@@ -5,14 +5,14 @@ from typing import Annotated
 from executive.core.outcome import failure, success
 from executive.core.skill import In, Port, SkillRun
 from perception.shelf.beliefs import ShelfBelief
-from perception.shelf.interfaces import ShelfReasoning, object_of
+from perception.shelf.interfaces import object_of
 from perception.shelf.planning.moves import Place, Push
-from robots.shelf_tool import PutElsewhere, ShelfTool, ToolFailure
+from robots.shelf_tool import PutElsewhere, ToolFailure
 from skills.shelf.tool_skill import (
     CUP_REASONS,
     MOTION_REASONS,
     NOT_SEEN,
-    ToolSkill,
+    AccountedSkill,
     cuboid,
     failed,
     nothing_met,
@@ -20,7 +20,7 @@ from skills.shelf.tool_skill import (
 )
 
 
-class PlaceObject(ToolSkill):
+class PlaceObject(AccountedSkill):
     """Suck an object on, take it out straight, and put it down elsewhere on the shelf.
 
     SUCCESS: the object stands at its new place; `belief` has it there.
@@ -33,11 +33,6 @@ class PlaceObject(ToolSkill):
 
     OUT = {"belief": Port(ShelfBelief, "what is known of the shelf after the move")}
     REASONS = MOTION_REASONS | CUP_REASONS | {NOT_SEEN, "move.other", ToolFailure.NO_PLACE.value}
-
-    def __init__(self, tool: ShelfTool, search: ShelfReasoning) -> None:
-        """Bind the arm, and who keeps account."""
-        super().__init__(tool)
-        self._search = search
 
     def run(
         self,

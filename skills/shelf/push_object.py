@@ -5,15 +5,15 @@ from typing import Annotated
 from executive.core.outcome import failure, success
 from executive.core.skill import In, Port, SkillRun
 from perception.shelf.beliefs import ShelfBelief
-from perception.shelf.interfaces import ShelfReasoning, object_of
+from perception.shelf.interfaces import object_of
 from perception.shelf.planning.contacts import contact_beside
 from perception.shelf.planning.moves import Place, Push
-from robots.shelf_tool import PushAlong, ShelfTool
+from robots.shelf_tool import PushAlong
 from skills.shelf.tool_skill import (
     MOTION_REASONS,
     NOT_SEEN,
     PUSH_REASONS,
-    ToolSkill,
+    AccountedSkill,
     cuboid,
     failed,
     nothing_met,
@@ -24,7 +24,7 @@ from skills.shelf.tool_skill import (
 SHORT_M = 0.01
 
 
-class PushObject(ToolSkill):
+class PushObject(AccountedSkill):
     """Push an object with the blade, until it has gone far enough or meets something.
 
     SUCCESS: the object has moved; `belief` has it where it is by the way that it went, and what it
@@ -37,11 +37,6 @@ class PushObject(ToolSkill):
 
     OUT = {"belief": Port(ShelfBelief, "what is known of the shelf after the push")}
     REASONS = MOTION_REASONS | PUSH_REASONS | {NOT_SEEN, "move.other"}
-
-    def __init__(self, tool: ShelfTool, search: ShelfReasoning) -> None:
-        """Bind the arm, and who keeps account."""
-        super().__init__(tool)
-        self._search = search
 
     def run(
         self,

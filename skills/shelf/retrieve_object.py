@@ -5,20 +5,20 @@ from typing import Annotated
 from executive.core.outcome import success
 from executive.core.skill import In, Port, SkillRun
 from perception.shelf.beliefs import ShelfBelief
-from perception.shelf.interfaces import ShelfReasoning, object_of
-from robots.shelf_tool import ShelfTool, TakeOut
+from perception.shelf.interfaces import object_of
+from robots.shelf_tool import TakeOut
 from skills.shelf.tool_skill import (
     CUP_REASONS,
     MOTION_REASONS,
     NOT_SEEN,
-    ToolSkill,
+    AccountedSkill,
     cuboid,
     failed,
     unseen,
 )
 
 
-class RetrieveObject(ToolSkill):
+class RetrieveObject(AccountedSkill):
     """Suck an object on, take it out of the shelf and bring it to where things are handed over.
 
     SUCCESS: the object is handed over; `belief` has it no more.
@@ -30,11 +30,6 @@ class RetrieveObject(ToolSkill):
 
     OUT = {"belief": Port(ShelfBelief, "what is known of the shelf without the object")}
     REASONS = MOTION_REASONS | CUP_REASONS | {NOT_SEEN}
-
-    def __init__(self, tool: ShelfTool, search: ShelfReasoning) -> None:
-        """Bind the arm, and who keeps account."""
-        super().__init__(tool)
-        self._search = search
 
     def run(
         self,

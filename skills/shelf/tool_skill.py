@@ -7,6 +7,7 @@ import numpy as np
 from executive.core.outcome import Outcome, failure
 from executive.core.skill import Skill
 from perception.shelf.beliefs import ShelfBelief
+from perception.shelf.interfaces import ShelfReasoning
 from perception.shelf.types import Box, Floats
 from robots.shelf_tool import Cuboid, ShelfTool, ToolAction, ToolFailure, ToolResult
 
@@ -66,6 +67,15 @@ class ToolSkill(Skill):
         while (result := self._tool.result()) is None:
             yield
         return result
+
+
+class AccountedSkill(ToolSkill):
+    """Base of skills after which something stands elsewhere than before."""
+
+    def __init__(self, tool: ShelfTool, search: ShelfReasoning) -> None:
+        """Bind the arm, and who keeps account."""
+        super().__init__(tool)
+        self._search = search
 
 
 def failed(result: ToolResult, label: str) -> Outcome:
