@@ -5,13 +5,13 @@ elsewhere that sends requests here, or points its own name at this machine, is r
 """
 
 import hmac
-from urllib.parse import parse_qs, urlsplit
+from urllib.parse import parse_qs
 
 from starlette.datastructures import Headers
 from starlette.responses import JSONResponse
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from executive.core.network import is_loopback
+from executive.core.network import host_of_origin, hostname_of, is_loopback
 
 LONGEST_BODY = 64 * 1024
 
@@ -39,10 +39,10 @@ class Guard:
 
     def _refusal(self, scope: Scope, headers: Headers) -> tuple[int, str | None]:
         host = headers.get("host", "")
-        if self._token is None and not is_loopback(_hostname(host)):
+        if self._token is None and not is_loopback(hostname_of(host)):
             return 403, f"host {host!r} is not served; expected a name of this machine"
         origin = headers.get("origin")
-        if origin is not None and urlsplit(origin).netloc != host:
+        if origin is not None and host_of_origin(origin) != host:
             return 403, f"requests of pages of {origin!r} are refused"
         if self._token is not None and not self._knows_token(scope, headers):
             return 401, "a token is needed; expected the header Authorization: Bearer TOKEN"
@@ -55,13 +55,6 @@ class Guard:
         if scope["type"] == "websocket" and not given:  # a browser's cannot send headers
             given = parse_qs(scope["query_string"].decode("latin-1")).get("token", [""])[0]
         return hmac.compare_digest(given.encode(), (self._token or "").encode())
-
-
-def _hostname(host: str) -> str:
-    try:
-        return urlsplit(f"//{host}").hostname or ""
-    except ValueError:  # no address, such as an unfinished [
-        return ""
 
 
 def _length(headers: Headers) -> int:

@@ -7,13 +7,13 @@ that we serve (which a page elsewhere that points its own name at this machine d
 
 import hmac
 from http.cookies import CookieError, SimpleCookie
-from urllib.parse import parse_qs, urlsplit
+from urllib.parse import parse_qs
 
 from starlette.datastructures import Headers
 from starlette.responses import PlainTextResponse
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from executive.core.network import is_loopback
+from executive.core.network import host_of_origin, hostname_of, is_loopback
 
 COOKIE = "cellwright_token"
 
@@ -41,11 +41,11 @@ class AccessControl:
     def _refusal(self, scope: Scope) -> str | None:
         headers = Headers(scope=scope)
         host = headers.get("host", "")
-        if self._token is None and not is_loopback(urlsplit(f"//{host}").hostname or ""):
+        if self._token is None and not is_loopback(hostname_of(host)):
             return f"host {host!r} is not served; open the page by a name of this machine"
         origin = headers.get("origin")
         changes = scope["type"] == "websocket" or scope["method"] not in ("GET", "HEAD")
-        if (origin is not None or changes) and urlsplit(origin or "").netloc != host:
+        if (origin is not None or changes) and host_of_origin(origin or "") != host:
             return f"requests from {origin or 'no page'} are refused: they are not our page's"
         if self._token is not None and not self._knows_token(scope, headers):
             return "a token is needed; open the address that the command printed"

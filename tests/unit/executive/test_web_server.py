@@ -192,6 +192,8 @@ def test_the_page_hears_of_a_run_that_grows(path, tmp_path):
     [
         {"host": "evil.example"},
         {"host": "127.0.0.1.evil.example"},
+        {"host": "[::1"},
+        LOCAL | {"origin": "http://["},
         {"origin": "http://evil.example"},
         {"origin": "null"},
     ],
