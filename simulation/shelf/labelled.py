@@ -13,11 +13,11 @@ import numpy as np
 from perception.camera import CameraModel
 from perception.rgbd import RgbdFrame
 from perception.shelf.casting import BoxCaster
+from perception.shelf.rendering import ShelfRenderer
 from perception.shelf.types import NOTHING, Bools, Box, Floats, Segments, Shelf
 from simulation.shelf.cameras import front_camera
 from simulation.shelf.packages import Package
 from simulation.shelf.picturing import FACE_M, SIDE, TOP, WALLS, SensorNoise
-from simulation.shelf.rendering import ShelfRenderer
 
 # Nothing on a shelf of packages is taller.
 TALLEST_M = 0.22

@@ -8,8 +8,8 @@ import numpy as np
 from perception.camera import CameraModel
 from perception.rgbd import RgbdFrame
 from perception.shelf.casting import BoxCaster
+from perception.shelf.rendering import ShelfRenderer
 from perception.shelf.types import NOTHING, Box, Floats, Segments, Shelf
-from simulation.shelf.rendering import ShelfRenderer
 
 # Light on the fronts, tops and sides of boxes.
 FRONT, TOP, SIDE = 1.0, 0.92, 0.78

@@ -10,10 +10,10 @@ import numpy as np
 from executive.core.errors import InputError
 from perception.camera import CameraModel
 from perception.shelf.casting import BoxCaster
+from perception.shelf.rendering import ShelfRenderer
 from perception.shelf.types import Box, Floats, Shelf
 from simulation.shelf.arranging import Leaf, shelf_places
 from simulation.shelf.cameras import front_camera
-from simulation.shelf.rendering import ShelfRenderer
 from simulation.shelf.separating import separate
 from simulation.shelf.taxonomy import Domain, ShelfObject
 

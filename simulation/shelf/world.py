@@ -9,10 +9,10 @@ from perception.camera import CameraModel, DepthImage
 from perception.shelf.casting import BoxCaster
 from perception.shelf.planning.moves import Move, Push
 from perception.shelf.planning.room import Reach
+from perception.shelf.rendering import ShelfRenderer
 from perception.shelf.types import NOTHING, Box, Floats, Segments, ShelfView
 from simulation.shelf.cameras import front_camera
 from simulation.shelf.contents import MoveFailure, MoveResult, ShelfContents
-from simulation.shelf.rendering import ShelfRenderer
 from simulation.shelf.scenes import Scene
 
 

@@ -7,11 +7,11 @@ from shelf_search import drawn_scenes
 from benchmarks.search_trials import Searcher, Way
 from perception.shelf.casting import BoxCaster
 from perception.shelf.hidden_poses import HiddenPoses, PoseBelief, PoseRules
+from perception.shelf.rendering import ShelfRenderer
 from perception.shelf.sightings import sightings
 from perception.shelf.spatial import RunningMinimum, along_shelf, mask_occupancy
 from perception.shelf.types import Box, Shelf
 from simulation.shelf.cameras import front_camera
-from simulation.shelf.rendering import ShelfRenderer
 from simulation.shelf.scenes import Scene, SceneRules
 from simulation.shelf.world import DepthNoise, ShelfWorld
 

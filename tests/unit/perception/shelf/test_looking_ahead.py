@@ -18,9 +18,9 @@ from perception.shelf.planning.moves import Place, Push
 from perception.shelf.planning.outlook import outlook
 from perception.shelf.planning.room import Reach, blade_fits, footprints, push_room_m, way_out
 from perception.shelf.planning.ways_out import freeing_move
+from perception.shelf.rendering import ShelfRenderer
 from perception.shelf.types import Box, Shelf, corners
 from simulation.shelf.cameras import front_camera
-from simulation.shelf.rendering import ShelfRenderer
 from simulation.shelf.scenes import SceneRules, draw_scene
 from simulation.shelf.taxonomy import shipped_domain
 

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from perception.shelf.casting import BoxCaster
+from perception.shelf.rendering import ShelfRenderer
 from perception.shelf.types import NOTHING, Box, Shelf
 from simulation.shelf.labelled import LabelledShelf, Looks, near_cameras, overview_camera
 from simulation.shelf.packages import Package, draw_package
 from simulation.shelf.picturing import SensorNoise
-from simulation.shelf.rendering import ShelfRenderer
 from simulation.shelf.taxonomy import shipped_domain
 
 CLEAR = Looks(glare=0.0, dimming=0.0, blur_px=0.0, noise=SensorNoise(0.0, 0.0, 0.0))

@@ -6,9 +6,9 @@ import pytest
 from executive.core.errors import InputError
 from perception.shelf.casting import BoxCaster
 from perception.shelf.planning.room import footprints, overlapping
+from perception.shelf.rendering import ShelfRenderer
 from perception.shelf.types import Shelf
 from simulation.shelf.cameras import front_camera
-from simulation.shelf.rendering import ShelfRenderer
 from simulation.shelf.scenes import SceneRules, draw_scene
 from simulation.shelf.separating import separate
 from simulation.shelf.taxonomy import shipped_domain
