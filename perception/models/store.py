@@ -13,6 +13,7 @@ from torch.nn.utils.fusion import fuse_conv_bn_eval
 from executive.core.errors import InputError
 from perception.models.crossing_ribbon_net import CrossingRibbonNet
 from perception.models.sight_net import SightNet
+from perception.models.spatial_net import SpatialNet
 from perception.models.thesis_crossing_net import ThesisCrossingNet
 from perception.models.tracer_net import TracerNet
 
@@ -22,6 +23,7 @@ NETWORKS: dict[str, Callable[[Sequence[int], float], nn.Module]] = {
     "sight": lambda widths, _: SightNet(widths),
     "crossing_ribbons": lambda widths, _: CrossingRibbonNet(widths),
     "thesis_crossing": lambda widths, _: ThesisCrossingNet(widths),
+    "thesis_spatial": lambda widths, _: SpatialNet(widths),
 }
 
 

@@ -20,6 +20,7 @@ TASKS: Mapping[str, str] = MappingProxyType(
         "crossing": "crossing:CrossingTask",
         "sight": "sight:SightTask",
         "thesis-crossing": "thesis_crossing:ThesisCrossingTask",
+        "thesis-spatial": "thesis_spatial:ThesisSpatialTask",
     }
 )
 
@@ -30,6 +31,7 @@ AFTER: Mapping[str, tuple[str, ...]] = MappingProxyType(
         "crossing": ("calibrate",),
         "sight": ("sight-calibration",),
         "thesis-crossing": ("calibrate",),
+        "thesis-spatial": ("spatial-measure",),
     }
 )
 
@@ -37,6 +39,7 @@ STEPS: Mapping[str, str] = MappingProxyType(
     {
         "calibrate": "calibrate:main",
         "sight-calibration": "sight_calibration:main",
+        "spatial-measure": "spatial_measure:main",
         "trace-posterior": "trace_posterior:main",
     }
 )
