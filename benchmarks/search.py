@@ -23,7 +23,8 @@ import numpy as np
 from benchmarks.harness import Row, mean, median, percentile_95, share
 from benchmarks.search_bounds import least_moves
 from benchmarks.search_ours import search_ours
-from benchmarks.search_trials import Trial, Way, poses_of, search
+from benchmarks.search_trials import Way, poses_of, search_by
+from benchmarks.searching import Trial
 from executive.core.errors import InputError
 from perception.shelf.affinity import AffinityMatrix, Origin, affinity_from_scores
 from perception.shelf.hidden_poses import HiddenPoses
@@ -98,7 +99,7 @@ def _thesis(affinity: AffinityMatrix, reach: Reach) -> Method:
 
 
 def _way(way: Way) -> Method:
-    return lambda scene, poses: search(scene, way, poses)
+    return lambda scene, poses: search_by(scene, way, poses)
 
 
 def _ours(affinity: AffinityMatrix | None, reach: Reach) -> Method:

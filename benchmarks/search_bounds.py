@@ -6,7 +6,7 @@ hardly a way at all. It is a bound from above on the fewest moves, since beams a
 
 import numpy as np
 
-from benchmarks.search_trials import SHOWN, Trial
+from benchmarks.searching import SHOWN, Trial
 from perception.shelf.planning.free_floor import CELL_M
 from perception.shelf.planning.looking_ahead import ANYHOW, FIXED, Depth, Situation, look_ahead
 from perception.shelf.planning.room import Reach, footprints

@@ -1,12 +1,12 @@
 """Searches by the mission's own reasoner, without a tree; detection is perfect.
 
 Names are told by the world, and the target counts as found when 1 % of it shows, as in
-`benchmarks.search_trials`.
+`benchmarks.searching`.
 """
 
 import numpy as np
 
-from benchmarks.search_trials import SHORT_M, SHOWN, Trial, timed
+from benchmarks.searching import SHORT_M, SHOWN, SearchedShelf, Trial, search
 from perception.rgbd import RgbdFrame
 from perception.shelf.affinity import AffinityMatrix, Origin, affinity_from_scores, even_rows
 from perception.shelf.detections import Detections
@@ -16,6 +16,7 @@ from perception.shelf.planning.moves import Move, Place
 from perception.shelf.planning.room import Reach
 from perception.shelf.reasoner import SearchReasoner
 from perception.shelf.stock import Product, Stock
+from simulation.shelf.cameras import front_camera
 from simulation.shelf.contents import MoveResult
 from simulation.shelf.scenes import Scene
 from simulation.shelf.world import ShelfWorld
@@ -29,7 +30,9 @@ class OurSearcher:
         scene: Scene,
         affinity: AffinityMatrix | None,
         reach: Reach,
+        world: SearchedShelf | None = None,
         poses: HiddenPoses | None = None,
+        enough: float = SHOWN,
     ) -> None:
         """Begin before the first look.
 
@@ -37,27 +40,29 @@ class OurSearcher:
             scene: What is searched.
             affinity: Semantics, or None for none.
             reach: What the tool can do.
+            world: What is looked into and acted on; None for one without physics.
             poses: Of the scene's target, which searches may share.
+            enough: The share of the target that has to show.
         """
-        self.target = scene.target
-        self.world = ShelfWorld(scene, np.random.default_rng(0), reach=reach)
+        self.target, self.enough = scene.target, enough
+        self.world = world or ShelfWorld(scene, np.random.default_rng(0), reach=reach)
+        camera = front_camera(scene.shelf)
         boxes = zip(scene.names, scene.boxes, strict=True)
         products = tuple(Product(name, box.size_m, (0, 0, 0)) for name, box in boxes)
         stock = Stock("", scene.shelf, products)
         affinity = affinity or affinity_from_scores(
             scene.names, even_rows(len(scene.names)), Origin("even")
         )
-        self.reasoner = SearchReasoner(stock, affinity, reach, self.world.camera)
+        self.reasoner = SearchReasoner(stock, affinity, reach, camera)
         if poses is not None:
             self.reasoner.share(scene.target, poses)
         self.belief = self.reasoner.begin(scene.target)
-        camera = self.world.camera
         self._black = np.zeros((camera.height_px, camera.width_px, 3), dtype=np.uint8)
         self._names = scene.names
 
     def shows(self) -> bool:
         """Ask the world whether the target counts as found."""
-        return self.world.visible_share(self.target) >= SHOWN
+        return self.world.visible_share(self.target) >= self.enough
 
     def look(self) -> None:
         """Look, and take in what is seen."""
@@ -95,17 +100,4 @@ def search_ours(
     poses: HiddenPoses | None = None,
 ) -> Trial:
     """Search with at most 2 N actions (thesis, section 5.2)."""
-    searcher, refusals = OurSearcher(scene, affinity, reach, poses), 0
-    beliefs, choices = list[float](), list[float]()
-    limit = 2 * len(scene.names)
-    for actions in range(limit + 1):
-        if searcher.shows():
-            return Trial(True, actions, False, refusals, tuple(beliefs), tuple(choices))
-        if actions == limit:
-            break
-        timed(beliefs, searcher.look)
-        move = timed(choices, searcher.choose)
-        if move is None:
-            return Trial(False, actions, True, refusals, tuple(beliefs), tuple(choices))
-        refusals += searcher.act(move).failure is not None
-    return Trial(False, limit, False, refusals, tuple(beliefs), tuple(choices))
+    return search(OurSearcher(scene, affinity, reach, poses=poses), 2 * len(scene.names))

@@ -1,20 +1,19 @@
-"""One search of one scene without a tree: look, estimate, choose, act, until the target shows.
+"""Searches as the thesis has them, and ways between its and ours, without a tree.
 
 Detection is perfect, sizes of the stock are known, and the target counts as found when 1 % of it
 shows, as in the thesis's simulations (section 7.4). Nothing else of the scene is known to it.
 """
 
-import time
-from collections.abc import Callable
-from dataclasses import dataclass, field
-from functools import partial
-from typing import Protocol, TypeVar
+from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 
+from benchmarks.searching import SHORT_M, SHOWN, SearchedShelf, Trial, search
 from perception.shelf.affinity import AffinityMatrix
 from perception.shelf.casting import BoxCaster
 from perception.shelf.hidden_poses import HiddenPoses, PoseBelief
+from perception.shelf.learned_occupancy import LearnedOccupancy
 from perception.shelf.organisation import organisation_of
 from perception.shelf.original import OriginalScene
 from perception.shelf.planning.clearing import ReductionWithClearing
@@ -33,12 +32,6 @@ from simulation.shelf.contents import MoveFailure, MoveResult
 from simulation.shelf.scenes import Scene
 from simulation.shelf.world import ShelfWorld
 
-# The thesis's rule: found when 1 % of the target shows (section 7.4).
-SHOWN = 0.01
-# A push that stops short by less has met what was seen.
-SHORT_M = 0.01
-
-T = TypeVar("T")
 Seen = tuple[Sighting, ...]
 
 
@@ -47,8 +40,9 @@ class Way:
     """How to search.
 
     Attributes:
-        spatial: `belief` (what any view has ruled out), `minimum` (over time, in the image) or
-            `masks` (the thesis's heuristic).
+        spatial: `belief` (what any view has ruled out), `minimum` (of exact occupancy over time,
+            in the image), `network` (the same of what the spatial network tells) or `masks` (the
+            thesis's heuristic).
         affinity: Semantics, or None for none.
         product: Where semantics are multiplied in: per `pose`, or per `column` as in the thesis.
         calibrated: Whether affinities are mixed by the estimated degree of organisation.
@@ -66,45 +60,16 @@ class Way:
     reach: Reach = Reach()  # noqa: RUF009 - frozen
 
 
-@dataclass(frozen=True, slots=True)
-class Trial:
-    """What came of a search.
+class WaySearcher:
+    """Knows names, sizes of known objects and what it sees; nothing else about the scene.
 
     Attributes:
-        success: Whether the target was found.
-        actions: Moves that were made.
-        stuck: Whether the search gave up before its time.
-        refusals: Moves that did not succeed.
-        belief_s: Time of each update of the belief.
-        choice_s: Time of each decision.
+        view: The latest look.
+        seen: Objects in it.
     """
 
-    success: bool
-    actions: int
-    stuck: bool = False
-    refusals: int = 0
-    belief_s: tuple[float, ...] = field(default=(), compare=False)
-    choice_s: tuple[float, ...] = field(default=(), compare=False)
-
-
-class SearchedShelf(Protocol):
-    """What a search looks into and acts on."""
-
-    def look(self) -> ShelfView:
-        """Take a view from the middle viewpoint; detection is perfect."""
-        ...
-
-    def act(self, move: Move) -> MoveResult:
-        """Do one action."""
-        ...
-
-    def visible_share(self, name: str) -> float:
-        """Return how much of an object's silhouette is seen, in [0, 1]; truth, for scoring."""
-        ...
-
-
-class Searcher:
-    """Knows names, sizes of known objects and what it sees; nothing else about the scene."""
+    view: ShelfView
+    seen: Seen
 
     def __init__(
         self,
@@ -112,6 +77,7 @@ class Searcher:
         way: Way,
         world: SearchedShelf | None = None,
         poses: HiddenPoses | None = None,
+        enough: float = SHOWN,
     ) -> None:
         """Begin before the first look.
 
@@ -120,6 +86,7 @@ class Searcher:
             way: How to search.
             world: What is looked into and acted on; None for one without physics.
             poses: Of the scene's target, which searches may share.
+            enough: The share of the target that has to show.
         """
         self.way, self.target, self.shelf = way, scene.target, scene.shelf
         self.world: SearchedShelf = world or ShelfWorld(
@@ -131,23 +98,24 @@ class Searcher:
         self.belief, self.minimum = PoseBelief(self.poses), RunningMinimum()
         self.original, self.contacts = OriginalScene(), Contacts()
         self.been: list[tuple[str, Box]] = []
+        self.enough = enough
         policy = ReductionWithClearing if way.policy == "clearing" else DistributionAreaReduction
         self.policy = policy(self.shelf, self.caster, way.reach)
 
     def shows(self) -> bool:
         """Ask the world whether the target counts as found."""
-        return self.world.visible_share(self.target) >= SHOWN
+        return self.world.visible_share(self.target) >= self.enough
 
-    def look(self) -> tuple[ShelfView, Seen]:
+    def look(self) -> None:
         """Look, and take in what is seen."""
-        view = self.world.look()
-        seen = sightings(view, self.shelf, self.sizes, self.caster)
-        self.original.update(seen)
-        self.belief.update(view, seen)
-        return view, seen
+        self.view = self.world.look()
+        self.seen = sightings(self.view, self.shelf, self.sizes, self.caster)
+        self.original.update(self.seen)
+        self.belief.update(self.view, self.seen)
 
-    def choose(self, view: ShelfView, seen: Seen) -> Move | None:
+    def choose(self) -> Move | None:
         """Choose the next move."""
+        view, seen = self.view, self.seen
         if self.way.policy == "ahead":
             return self._look_ahead(view, seen)
         occupancy = self.occupancy(view, seen)
@@ -165,9 +133,9 @@ class Searcher:
             )
         return along_shelf(heat) if self.way.flat else heat
 
-    def act(self, move: Move, seen: Seen) -> MoveResult:
+    def act(self, move: Move) -> MoveResult:
         """Act, and remember what the move has met, as a robot could by touch."""
-        box = next(sighting.box for sighting in seen if sighting.label == move.label)
+        box = next(sighting.box for sighting in self.seen if sighting.label == move.label)
         self.been.append((move.label, box))
         result, sign = self.world.act(move), push_sign(move)
         if result.failure is MoveFailure.NO_BLADE:
@@ -207,6 +175,10 @@ class Searcher:
         if self.way.spatial == "minimum":
             now = self.poses.feasible(view, seen).astype(float)
             return self.minimum.update(self.poses.heat(now))
+        if self.way.spatial == "network":
+            return self.minimum.update(
+                learned_occupancy().heat(view, self.shelf, self.sizes[self.target])
+            )
         return self.belief.heat()
 
     def _affinity(self) -> AffinityMatrix:
@@ -217,33 +189,18 @@ class Searcher:
         return affinity.mixed(organisation_of(self.original.boxes, affinity))
 
 
+@cache
+def learned_occupancy() -> LearnedOccupancy:
+    """Return the spatial network, read once in each process."""
+    return LearnedOccupancy()
+
+
 def poses_of(scene: Scene) -> HiddenPoses:
     """Return the poses of a scene's target, as large as it is."""
     size_m = scene.boxes[scene.names.index(scene.target)].size_m
     return HiddenPoses(size_m, scene.shelf, BoxCaster(front_camera(scene.shelf)))
 
 
-def search(scene: Scene, way: Way | None = None, poses: HiddenPoses | None = None) -> Trial:
+def search_by(scene: Scene, way: Way | None = None, poses: HiddenPoses | None = None) -> Trial:
     """Search with at most 2 N actions (thesis, section 5.2), in a world without physics."""
-    searcher, refusals = Searcher(scene, way or Way(), poses=poses), 0
-    beliefs, choices = list[float](), list[float]()
-    limit = 2 * len(scene.names)
-    for actions in range(limit + 1):
-        if searcher.shows():
-            return Trial(True, actions, False, refusals, tuple(beliefs), tuple(choices))
-        if actions == limit:
-            break
-        view, seen = timed(beliefs, searcher.look)
-        move = timed(choices, partial(searcher.choose, view, seen))
-        if move is None:
-            return Trial(False, actions, True, refusals, tuple(beliefs), tuple(choices))
-        refusals += searcher.act(move, seen).failure is not None
-    return Trial(False, limit, False, refusals, tuple(beliefs), tuple(choices))
-
-
-def timed(times: list[float], call: Callable[[], T]) -> T:
-    """Call something, and note how long it took [s]."""
-    begun = time.perf_counter()
-    answer = call()
-    times.append(time.perf_counter() - begun)
-    return answer
+    return search(WaySearcher(scene, way or Way(), poses=poses), 2 * len(scene.names))

@@ -2,8 +2,9 @@
 
 Twelve pharmacy scenes, three each of 7, 8, 9 and 10 objects; a search ends when half of the target
 shows, or after two actions an object. The arm, contacts, friction and suction are simulated;
-detection is perfect, and depth is noisy. All policies search the same scenes. A target that shows,
-but not by half, is freed by one rule for all of them: move away what stands before it.
+detection is perfect, and depth is noisy. All policies search the same scenes. `ours` is the
+mission's own reasoner. A target that shows, but not by half, is freed by one rule for all of them:
+move away what stands before it.
 
 `--scenes N` takes more or fewer scenes, `--policies` some of the policies. With `--kept FILE` each
 search is written down when it is over, and a benchmark that was killed goes on from there.
@@ -13,14 +14,16 @@ import argparse
 import json
 import sys
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
 import numpy as np
 
 from benchmarks.harness import Row, mean, median, share
-from benchmarks.search_trials import Searcher, Way
+from benchmarks.search_ours import OurSearcher
+from benchmarks.search_trials import Way, WaySearcher
+from benchmarks.searching import Searcher, search
 from perception.camera import CameraModel
 from perception.shelf.language.stored import stored_affinity
 from perception.shelf.planning.free_floor import CELL_M, free_cells
@@ -28,7 +31,7 @@ from perception.shelf.planning.looking_ahead import ANYHOW, FIXED, Situation
 from perception.shelf.planning.moves import Move, Push
 from perception.shelf.planning.room import Reach
 from perception.shelf.planning.ways_out import freeing_move
-from perception.shelf.types import ShelfView, Sighting
+from perception.shelf.types import Box, ShelfView
 from robots.shelf_tool import (
     Cuboid,
     LookFrom,
@@ -39,6 +42,7 @@ from robots.shelf_tool import (
     ToolResult,
 )
 from simulation.shelf.contents import MoveFailure, MoveResult
+from simulation.shelf.scenes import Scene
 from simulation.shelf_cell.cell import ShelfCell
 
 SEED = 880_001
@@ -75,12 +79,12 @@ class Search:
 
 
 class PhysicalShelf:
-    """The shelf cell as `benchmarks.search_trials` searches it; detection is perfect."""
+    """The shelf cell as `benchmarks.searching` searches it; detection is perfect."""
 
     def __init__(self, cell: ShelfCell) -> None:
         """Bind a cell; the detector is told the truth."""
         self._cell, self._detector = cell, cell.oracle_detector
-        self._seen: Mapping[str, Sighting] = {}
+        self._known: Mapping[str, Box] = {}
 
     @property
     def camera(self) -> CameraModel:
@@ -95,13 +99,13 @@ class PhysicalShelf:
         labels = tuple(found.names[int(index)] for index in found.probabilities.argmax(axis=1))
         return ShelfView(frame.depth_m, found.segments, labels, self.camera)
 
-    def know(self, seen: Sequence[Sighting]) -> None:
-        """Take note of where things were seen: it is there that the arm acts."""
-        self._seen = {sighting.label: sighting for sighting in seen}
+    def know(self, boxes: Mapping[str, Box]) -> None:
+        """Take note of where things are thought to stand: it is there that the arm acts."""
+        self._known = boxes
 
     def act(self, move: Move) -> MoveResult:
         """Push or put elsewhere what was seen."""
-        box = self._seen[move.label].box
+        box = self._known[move.label]
         thing = Cuboid(box.x_m, box.y_m, box.size_m)
         if isinstance(move, Push):
             result = self.do(PushAlong(thing, move.shift_m))
@@ -125,14 +129,58 @@ class PhysicalShelf:
         return result
 
 
-def ways(reach: Reach) -> Mapping[str, Way]:
-    """Return the policies by name; none is told the taxonomy."""
+class ThesisSearcher(WaySearcher):
+    """Searches one of the thesis's ways, and frees a target that shows a little."""
+
+    def choose(self) -> Move | None:
+        """Choose the next move."""
+        assert isinstance(self.world, PhysicalShelf)
+        self.world.know({sighting.label: sighting.box for sighting in self.seen})
+        return self._freeing() or super().choose()
+
+    def _freeing(self) -> Move | None:
+        labels = tuple(sighting.label for sighting in self.seen)
+        if self.target not in labels:
+            return None
+        places_m = self.poses.places_m
+        situation = Situation(
+            self.shelf, self.way.reach, self.view.camera, labels,
+            tuple(sighting.box for sighting in self.seen),
+            np.array([FIXED if name == self.target else ANYHOW for name in labels]),
+            self.contacts.footprints, free_cells(self.view, self.shelf, self.caster), CELL_M,
+            self.sizes[self.target], places_m, np.full(len(places_m), 1.0 / len(places_m)),
+            self.been,
+        )  # fmt: skip
+        return freeing_move(situation, self.target)
+
+
+class MissionSearcher(OurSearcher):
+    """Searches as the mission does, and frees a target that shows a little."""
+
+    def choose(self) -> Move | None:
+        """Choose the next move."""
+        assert isinstance(self.world, PhysicalShelf)
+        self.world.know(self.belief.boxes)
+        if self.belief.found is not None:
+            move = self.reasoner.clear_way(self.belief, self.target)
+            if move is not None:
+                return move
+        return super().choose()
+
+
+def searchers(reach: Reach) -> Mapping[str, Callable[[Scene, PhysicalShelf], Searcher]]:
+    """Return who searches, by name; none is told the taxonomy."""
     affinity = stored_affinity("pharmacy")
+
+    def by(way: Way) -> Callable[[Scene, PhysicalShelf], Searcher]:
+        return lambda scene, world: ThesisSearcher(scene, way, world, enough=SHOWN)
+
     return {
-        "spatial": Way("minimum", None, flat=True, reach=reach),
-        "heuristic": Way("masks", affinity, flat=True, reach=reach),
-        "s4": Way("minimum", affinity, flat=True, reach=reach),
-        "ours": Way("belief", affinity, "pose", calibrated=True, policy="ahead", reach=reach),
+        "spatial_nn": by(Way("network", None, flat=True, reach=reach)),
+        "spatial": by(Way("minimum", None, flat=True, reach=reach)),
+        "heuristic": by(Way("masks", affinity, flat=True, reach=reach)),
+        "s4": by(Way("network", affinity, flat=True, reach=reach)),
+        "ours": lambda scene, world: MissionSearcher(scene, affinity, reach, world, enough=SHOWN),
     }
 
 
@@ -179,7 +227,7 @@ def run(quick: bool, seed: int, words: Sequence[str] = ()) -> Sequence[Row]:
 
 
 def _options(words: Sequence[str], quick: bool) -> argparse.Namespace:
-    names = list(ways(Reach()))
+    names = list(searchers(Reach()))
     parser = argparse.ArgumentParser(prog="python -m benchmarks shelf-cell")
     parser.add_argument("--scenes", type=int, default=2 if quick else SCENES)
     parser.add_argument("--policies", nargs="+", choices=names, default=names)
@@ -192,46 +240,13 @@ def _search(name: str, scenario: Mapping[str, object], seed: int) -> Search:
     try:
         shape = cell.tool.shape
         reach = Reach(shape.blade_m, shape.overlap_m, shape.gap_m, shape.suction)
-        world = PhysicalShelf(cell)
-        searcher = Searcher(cell.scene, ways(reach)[name], world=world)
-        found, actions, failures = _searched(searcher, world, 2 * len(cell.scene.names))
-        return Search(found, actions, failures, cell.truth().toppled, cell.clock.now_s())
+        searcher = searchers(reach)[name](cell.scene, PhysicalShelf(cell))
+        went = search(searcher, 2 * len(cell.scene.names))
+        return Search(
+            went.success, went.actions, went.refusals, cell.truth().toppled, cell.clock.now_s()
+        )
     finally:
         cell.close()
-
-
-def _searched(searcher: Searcher, world: PhysicalShelf, limit: int) -> tuple[bool, int, int]:
-    """Return whether the target was found, after how many actions, and how many of them failed."""
-    failures = 0
-    for actions in range(limit + 1):
-        if world.visible_share(searcher.target) >= SHOWN:
-            return True, actions, failures
-        if actions == limit:
-            break
-        view, seen = searcher.look()
-        world.know(seen)
-        move = _freeing(searcher, view, seen) or searcher.choose(view, seen)
-        if move is None:
-            return False, actions, failures
-        failures += searcher.act(move, seen).failure is not None
-    return False, limit, failures
-
-
-def _freeing(searcher: Searcher, view: ShelfView, seen: Sequence[Sighting]) -> Move | None:
-    """Return what frees a target that shows a little; None when it does not show."""
-    labels = tuple(sighting.label for sighting in seen)
-    if searcher.target not in labels:
-        return None
-    places_m = searcher.poses.places_m
-    situation = Situation(
-        searcher.shelf, searcher.way.reach, view.camera, labels,
-        tuple(sighting.box for sighting in seen),
-        np.array([FIXED if name == searcher.target else ANYHOW for name in labels]),
-        searcher.contacts.footprints, free_cells(view, searcher.shelf, searcher.caster), CELL_M,
-        searcher.sizes[searcher.target], places_m, np.full(len(places_m), 1.0 / len(places_m)),
-        searcher.been,
-    )  # fmt: skip
-    return freeing_move(situation, searcher.target)
 
 
 def _rows(found: Mapping[str, Sequence[Search]]) -> list[Row]:

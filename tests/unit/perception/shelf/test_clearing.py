@@ -3,7 +3,8 @@
 import numpy as np
 from shelf_search import drawn_scenes
 
-from benchmarks.search_trials import Searcher, Trial, Way, search
+from benchmarks.search_trials import Way, WaySearcher, search_by
+from benchmarks.searching import Trial
 from perception.shelf.planning.clearing import ReductionWithClearing
 from perception.shelf.planning.dar import DistributionAreaReduction
 from perception.shelf.planning.room import Reach
@@ -15,8 +16,9 @@ NOTHING_MET = np.zeros((0, 4))
 
 def test_it_does_as_the_published_policy_wherever_that_has_a_move():
     for scene in drawn_scenes("pharmacy", SceneRules(15), range(4)):
-        searcher = Searcher(scene, Way())
-        view, seen = searcher.look()
+        searcher = WaySearcher(scene, Way())
+        searcher.look()
+        view, seen = searcher.view, searcher.seen
         heat = searcher.occupancy(view, seen)
         moves = [
             policy(scene.shelf, searcher.caster, Reach()).choose(heat, view, seen, NOTHING_MET)
@@ -39,15 +41,16 @@ def blocked_scene():
 
 def test_what_stands_in_the_way_is_moved_out_of_it():
     labels = []
-    searcher = Searcher(blocked_scene(), Way(policy="clearing"))
+    searcher = WaySearcher(blocked_scene(), Way(policy="clearing"))
     published = DistributionAreaReduction(searcher.shelf, searcher.caster, Reach())
     for stuck in (True, False):
-        view, seen = searcher.look()
+        searcher.look()
+        view, seen = searcher.view, searcher.seen
         heat = np.zeros(view.depth_m.shape)
         heat[next(one.mask for one in seen if one.label == "tall")] = 1.0
         assert (published.choose(heat, view, seen, NOTHING_MET) is None) == stuck
         move = searcher.policy.choose(heat, view, seen, NOTHING_MET)
-        assert searcher.act(move, seen).failure is None
+        assert searcher.act(move).failure is None
         labels.append(move.label)
     assert labels[0] in ("left", "right")
     assert labels[1] == "tall"
@@ -59,13 +62,13 @@ def test_where_no_move_helps_it_says_so():
     behind = Box(0.4, 0.25, (0.04, 0.04, 0.06))
     names = ("a", "b", "c", "d", "target")
     scene = Scene(Shelf(), names, (*row, behind), "target")
-    found = search(scene, Way(policy="clearing", reach=Reach(suction=False)))
+    found = search_by(scene, Way(policy="clearing", reach=Reach(suction=False)))
     assert found == Trial(False, 0, stuck=True)
 
 
 def test_searches_that_got_stuck_are_solved():
     scenes = drawn_scenes("pharmacy", SceneRules(15), (5, 17, 22, 24))
-    plain = [search(scene) for scene in scenes]
-    cleared = [search(scene, Way(policy="clearing")) for scene in scenes]
+    plain = [search_by(scene) for scene in scenes]
+    cleared = [search_by(scene, Way(policy="clearing")) for scene in scenes]
     assert sum(found.stuck for found in plain) >= 2
     assert all(found.success for found in cleared)

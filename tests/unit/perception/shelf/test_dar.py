@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from shelf_search import drawn_scenes
 
-from benchmarks.search_trials import Searcher, Way
+from benchmarks.search_trials import Way, WaySearcher
 from perception.shelf.planning.contacts import Contacts, push_sign
 from perception.shelf.planning.moves import Place
 from perception.shelf.planning.options import options
@@ -29,8 +29,9 @@ def looking_at(*boxes, reach=Reach(), target=(0.04, 0.04, 0.06)):  # noqa: B008 
     names = (*(f"thing {index}" for index in range(len(boxes))), "target")
     behind = Box(boxes[0].x_m, boxes[0].high_m[1] + 0.5 * target[1] + 0.01, target)
     scene = Scene(SHELF, names, (*boxes, behind), "target")
-    searcher = Searcher(scene, Way(reach=reach))
-    return searcher, *searcher.look()
+    searcher = WaySearcher(scene, Way(reach=reach))
+    searcher.look()
+    return searcher, searcher.view, searcher.seen
 
 
 def choice(searcher, view, seen, heat=None):
@@ -108,8 +109,9 @@ def test_options_are_possible_where_everything_is_seen():
              Box(0.65, 0.05, (0.06, 0.04, 0.08))]  # fmt: skip
     names = ("a", "b", "c")
     scene, tried = Scene(SHELF, names, tuple(boxes), "a"), 0
-    searcher = Searcher(scene, Way())
-    view, seen = searcher.look()
+    searcher = WaySearcher(scene, Way())
+    searcher.look()
+    view, seen = searcher.view, searcher.seen
     for sighting in seen:
         for option in options(sighting, seen, view, SHELF, searcher.caster, Reach(), NOTHING_MET):
             world = ShelfWorld(scene, np.random.default_rng(0))
