@@ -11,6 +11,7 @@ from torch import nn
 from torch.nn.utils.fusion import fuse_conv_bn_eval
 
 from executive.core.errors import InputError
+from executive.core.json_files import read_json
 from perception.models.crossing_ribbon_net import CrossingRibbonNet
 from perception.models.sight_net import SightNet
 from perception.models.spatial_net import SpatialNet
@@ -48,8 +49,12 @@ class ModelConfig(BaseModel):
 
 
 def read_config(folder: Path) -> ModelConfig:
-    """Read the config of a trained version."""
-    return ModelConfig.model_validate_json((folder / "config.json").read_text())
+    """Read the config of a trained version.
+
+    Raises:
+        InputError: There is none, or it is damaged.
+    """
+    return read_json(folder / "config.json", ModelConfig, "the config of a network")
 
 
 def load_network(folder: Path) -> nn.Module:

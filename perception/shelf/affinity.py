@@ -8,9 +8,10 @@ from pathlib import Path
 from typing import Literal
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic import BaseModel, ConfigDict
 
 from executive.core.errors import InputError
+from executive.core.json_files import read_json
 from executive.core.registry import closest
 from perception.shelf.types import Floats
 
@@ -147,13 +148,7 @@ def load_affinity(path: Path) -> AffinityMatrix:
     Raises:
         InputError: The file cannot be used.
     """
-    try:
-        document = _AffinityFile.model_validate_json(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        message = f"{path}: cannot be read; got {error.strerror}; expected a JSON file"
-        raise InputError(message) from error
-    except (ValidationError, UnicodeDecodeError) as error:
-        raise InputError(f"{path}: not an affinity matrix: {error}") from error
+    document = read_json(path, _AffinityFile, "an affinity matrix")
     if len({len(row) for row in document.rows} | {len(document.names)}) != 1:
         raise InputError(f"{path}: rows: expected {len(document.names)} values in each row")
     rows = np.array(document.rows, dtype=np.float64)

@@ -4,9 +4,10 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic import BaseModel, ConfigDict
 
 from executive.core.errors import InputError
+from executive.core.json_files import read_json
 from simulation.cable.configurations import settle
 from simulation.cable.knots import smooth
 from simulation.cable.parameters import RodParameters
@@ -53,14 +54,7 @@ def configuration_from_file(path: Path, parameters: RodParameters | None = None)
 
 
 def _points(path: Path) -> Floats:
-    try:
-        document = CentreLineDocument.model_validate_json(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        message = f"{path}: cannot be read; got {error.strerror}; expected a JSON file"
-        raise InputError(message) from error
-    except (ValidationError, UnicodeDecodeError) as error:
-        message = f'{path}: not a centre line; expected {{"nodes_m": [[x, y, z], ...]}}: {error}'
-        raise InputError(message) from error
+    document = read_json(path, CentreLineDocument, 'a centre line {"nodes_m": [[x, y, z], ...]}')
     points_m = np.array(document.nodes_m, dtype=np.float64).reshape(-1, 3)
     apart = np.ones(len(points_m), dtype=bool)
     apart[1:] = np.any(np.diff(points_m, axis=0) != 0.0, axis=1)

@@ -26,6 +26,7 @@ from pydantic import ValidationError
 from executive.app.service.cell_service import CellService
 from executive.app.service.messages import CellState, MissionRequest, MissionView
 from executive.core.errors import CellwrightError, InputError
+from executive.core.json_files import first_fault
 
 NAMESPACE = "https://cellwright.org/cell"
 USER = "cellwright"
@@ -294,9 +295,7 @@ def _request(mission: Any, seed: Any, settings: Any, key: Any) -> MissionRequest
     try:
         return MissionRequest(mission=mission, seed=seed, settings=values, key=key or "")
     except ValidationError as error:
-        first = error.errors(include_url=False)[0]
-        where = ".".join(map(str, first["loc"]))
-        raise InputError(f"StartMission: {where}: {first['msg']}") from None
+        raise InputError(f"StartMission: {first_fault(error)}") from None
 
 
 def _caller(act: Callable[[], CellState]) -> Callable[..., Any]:

@@ -6,6 +6,7 @@ from typing import Any
 from pydantic import BaseModel, ConfigDict, TypeAdapter, ValidationError
 
 from executive.core.errors import InputError
+from executive.core.json_files import first_fault
 from executive.engine.debugging.debugger import Debugger
 from executive.engine.debugging.stepping import Step
 from executive.engine.running.control import RunControl
@@ -91,9 +92,7 @@ class RunCommands:
             try:
                 asked = form.model_validate(arguments)
             except ValidationError as error:
-                told = error.errors()[0]
-                where = ".".join(str(part) for part in told["loc"])
-                raise InputError(f"{where}: {told['msg']}") from None
+                raise InputError(first_fault(error)) from None
             act(asked)
             return self.state()
 

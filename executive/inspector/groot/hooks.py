@@ -15,6 +15,7 @@ from typing import Annotated, Any, Final, Literal, Protocol, TypeVar
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
 
 from executive.core.errors import InputError
+from executive.core.json_files import first_fault
 from executive.engine.running.remote import NotRunningError
 from executive.inspector.groot.live_tree import LiveTree
 
@@ -241,6 +242,4 @@ def _read(form: TypeAdapter[_Form], data: bytes) -> _Form:
     try:
         return form.validate_json(data)
     except ValidationError as error:
-        told = error.errors()[0]
-        where = ".".join(str(part) for part in told["loc"])
-        raise InputError(f"{where or 'JSON'}: {told['msg']}") from None
+        raise InputError(first_fault(error)) from None

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict
 
 from executive.core.errors import InputError
+from executive.core.json_files import read_json
 from perception.cable.eyes import LEAST_END
 from perception.cable.observation import Observation, Observe
 from perception.cable.plug_ends import find_ends
@@ -270,14 +271,14 @@ def read_weights(path: FilePath) -> Weights:
     """Read weights of evidence.
 
     Raises:
-        InputError: There is no such file, or it names other features.
+        InputError: There is no such file, it is damaged, or it names other features.
     """
     if not path.exists():
         raise InputError(
             f"{path}: no weights of evidence; expected a fitted version; "
             f"try python -m perception.training.trace_posterior {path.parent}"
         )
-    weights = Weights.model_validate_json(path.read_text())
+    weights = read_json(path, Weights, "weights of evidence")
     if set(weights.trace) != set(FEATURES) or set(weights.none) != set(NONE_FEATURES):
         raise InputError(
             f"{path}: got features {sorted({*weights.trace, *weights.none})}; "

@@ -10,10 +10,11 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic import BaseModel, ConfigDict
 from scipy.optimize import minimize
 
 from executive.core.errors import InputError
+from executive.core.json_files import read_json
 from perception.rgbd import ColourImage
 from perception.shelf.detection.segmenting import STEP_M, ShelfPoints
 from perception.shelf.types import Bools, Floats
@@ -77,12 +78,7 @@ def load_appearance(path: Path) -> AppearanceModel:
     Raises:
         InputError: The file cannot be used.
     """
-    try:
-        document = _ModelFile.model_validate_json(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read; got {error.strerror}") from error
-    except (ValidationError, UnicodeDecodeError) as error:
-        raise InputError(f"{path}: not an appearance model: {error}") from error
+    document = read_json(path, _ModelFile, "an appearance model")
     mean, scale, weights = (
         np.array(values) for values in (document.mean, document.scale, document.weights)
     )

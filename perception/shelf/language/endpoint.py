@@ -18,6 +18,7 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict, ValidationError
 
 from executive.core.errors import InputError
+from executive.core.json_files import faults_of
 from perception.shelf.language.scores import Source
 from perception.shelf.types import Floats
 
@@ -94,7 +95,7 @@ class EndpointModel:
             return _Answer.model_validate(self._post(body))
         except ValidationError as error:
             raise InputError(
-                f"{self.address}: not an answer of a completions server: {error}"
+                f"{self.address}: not an answer of a completions server: {faults_of(error)}"
             ) from error
 
     def _post(self, body: Mapping[str, object]) -> Any:

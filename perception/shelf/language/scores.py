@@ -9,9 +9,10 @@ from pathlib import Path
 from typing import Literal
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic import BaseModel, ConfigDict
 
 from executive.core.errors import InputError
+from executive.core.json_files import read_json
 from executive.core.registry import closest
 from perception.shelf.types import Floats
 
@@ -112,13 +113,7 @@ def load_scores(path: Path) -> PairScores:
     Raises:
         InputError: The file cannot be used.
     """
-    try:
-        document = _ScoreFile.model_validate_json(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        message = f"{path}: cannot be read; got {error.strerror}; expected a JSON file"
-        raise InputError(message) from error
-    except (ValidationError, UnicodeDecodeError) as error:
-        raise InputError(f"{path}: not scores of pairs: {error}") from error
+    document = read_json(path, _ScoreFile, "scores of pairs")
     source = Source(document.model, document.version, document.licence, document.date)
     count, layers = len(document.names), len(document.prompts)
     sides = {len(row) for layer in document.scores for row in layer}

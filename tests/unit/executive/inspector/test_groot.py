@@ -228,7 +228,7 @@ def test_a_deeply_nested_hook_is_refused(answers):
     ("letter", "more", "message"),
     [
         ("I", (hook(10_000),), "node 10000 not found"),
-        ("I", (b"{}",), "Field required"),
+        ("I", (b"{}",), "uid is missing"),
         ("I", (), "EOF"),
         ("I", (hook(1, mode=1, status="RUNNING"),), "expected SUCCESS or FAILURE"),
         ("I", (hook(1, mode=1, status="SUCCESS", position=1),), "keeps its answer"),
