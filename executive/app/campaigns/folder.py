@@ -1,18 +1,19 @@
 """The folder of a campaign: what is run, and each result as soon as it is there."""
 
-import os
 from collections.abc import Iterator
 from pathlib import Path
 
-from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic import BaseModel, ConfigDict
 
 from executive.app.campaigns.document import CampaignDocument
 from executive.app.campaigns.jobs import LOST, RunRecord
 from executive.app.campaigns.one_run import RECORDINGS
 from executive.core.errors import InputError
+from executive.core.json_files import read_json
 from executive.engine.recording.messages import SourceFile
+from executive.engine.result_folders import PLAN, ResultLines, begin_folder
 
-PLAN, RESULTS, LOCK = "campaign.json", "results.jsonl", "campaign.lock"
+LOCK = "campaign.lock"
 
 
 class CampaignPlan(BaseModel):
@@ -34,6 +35,7 @@ class CampaignFolder:
     def __init__(self, folder: Path) -> None:
         """Name it; nothing is read or written yet."""
         self.folder = folder
+        self._lines = ResultLines(folder, RunRecord)
 
     @property
     def lock(self) -> Path:
@@ -46,32 +48,17 @@ class CampaignFolder:
         Raises:
             InputError: It holds a campaign already, or cannot be made.
         """
-        if (self.folder / PLAN).exists():
-            raise InputError(
-                f"{self.folder}: holds a campaign already; try --resume, or another --out"
-            )
-        try:
-            (self.folder / RECORDINGS).mkdir(parents=True, exist_ok=True)
-            file = self.folder / f"{PLAN}.new"
-            file.write_text(plan.model_dump_json(indent=1, by_alias=True), encoding="utf-8")
-            file.replace(self.folder / PLAN)
-        except OSError as error:
-            raise InputError(f"{self.folder}: cannot be written: {error.strerror}") from None
+        begin_folder(self.folder, plan, RECORDINGS)
 
     def plan(self) -> CampaignPlan:
         """Return what the campaign was begun with.
 
         Raises:
-            InputError: There is none.
+            InputError: There is none, or it is damaged.
         """
-        file = self.folder / PLAN
-        try:
-            return CampaignPlan.model_validate_json(file.read_text(encoding="utf-8"))
-        except (OSError, UnicodeDecodeError):
-            raise InputError(f"{self.folder}: holds no campaign; expected {PLAN} in it") from None
-        except ValidationError as error:
-            first = error.errors(include_url=False)[0]
-            raise InputError(f"{file}: is damaged; got {first['msg']}") from None
+        if not (self.folder / PLAN).exists():
+            raise InputError(f"{self.folder}: holds no campaign; expected {PLAN} in it")
+        return read_json(self.folder / PLAN, CampaignPlan, "a campaign")
 
     def resume(self, plan: CampaignPlan) -> None:
         """Check that the folder holds this campaign, and clear what a kill has left there.
@@ -93,7 +80,7 @@ class CampaignFolder:
                 raise InputError(
                     f"{source.file}: is not what it was when the campaign began; try another --out"
                 )
-        self._end_last_line()
+        self._lines.end_last_line()
         self._clear()
 
     def add(self, record: RunRecord) -> None:
@@ -102,19 +89,7 @@ class CampaignFolder:
         Raises:
             InputError: It cannot be written; the run is repeated when the campaign goes on.
         """
-        line = record.model_dump_json().encode() + b"\n"
-        file = self.folder / RESULTS
-        try:
-            with file.open("ab", buffering=0) as results:
-                begun = results.tell()
-                if results.write(line) != len(line):
-                    os.truncate(file, begun)
-                    raise OSError(0, "no space for a whole line")
-        except OSError as error:
-            raise InputError(
-                f"{file}: cannot be written; got {error.strerror}; "
-                "make room, and go on with --resume"
-            ) from None
+        self._lines.add(record)
 
     def records(self) -> Iterator[RunRecord]:
         """Yield the results so far; a line that was cut off or damaged is left out.
@@ -124,18 +99,7 @@ class CampaignFolder:
         yield from self._last().values()
 
     def _last(self) -> dict[str, RunRecord]:
-        found: dict[str, RunRecord] = {}
-        try:
-            with (self.folder / RESULTS).open("rb") as lines:
-                for line in lines:
-                    try:
-                        record = RunRecord.model_validate_json(line)
-                    except ValidationError:
-                        continue
-                    found[record.name] = record
-        except FileNotFoundError:
-            pass
-        return found
+        return {record.name: record for record in self._lines}
 
     def finished(self, *, again: bool) -> set[str]:
         """Return the names of runs that need not be run.
@@ -146,13 +110,6 @@ class CampaignFolder:
         return {
             name for name, record in self._last().items() if not (again and record.outcome in LOST)
         }
-
-    def _end_last_line(self) -> None:
-        """End a line that was cut off by a kill, so that the next result has its own."""
-        file = self.folder / RESULTS
-        if file.exists() and (data := file.read_bytes()) and not data.endswith(b"\n"):
-            with file.open("ab") as results:
-                results.write(b"\n")
 
     def _clear(self) -> None:
         """Remove recordings of runs that have no result: they are run again."""

@@ -9,8 +9,7 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 
 from executive.core.errors import InputError
 from executive.engine.recording.messages import SourceFile
-
-PLAN, RESULTS = "campaign.json", "results.jsonl"
+from executive.engine.result_folders import PLAN, ResultLines, begin_folder
 
 Verdict = Literal["survived", "ended", "wrong", "not reached"]
 
@@ -56,6 +55,7 @@ class CampaignFolder:
     def __init__(self, folder: Path) -> None:
         """Name it; nothing is read or written yet."""
         self.folder = folder
+        self._lines = ResultLines(folder, FaultRun)
 
     def begin(self, plan: CampaignPlan) -> None:
         """Make the folder.
@@ -63,15 +63,7 @@ class CampaignFolder:
         Raises:
             InputError: It holds a campaign already, or cannot be made.
         """
-        if (self.folder / PLAN).exists():
-            raise InputError(
-                f"{self.folder}: holds a campaign already; try --resume, or another --out"
-            )
-        try:
-            self.folder.mkdir(parents=True, exist_ok=True)
-            (self.folder / PLAN).write_text(plan.model_dump_json(indent=1), encoding="utf-8")
-        except OSError as error:
-            raise InputError(f"{self.folder}: cannot be written: {error.strerror}") from None
+        begin_folder(self.folder, plan)
 
     def resume(self, plan: CampaignPlan) -> None:
         """Check that the folder holds a campaign of the same plan.
@@ -91,38 +83,24 @@ class CampaignFolder:
                     f"{file}: that campaign has {name} {before!r}, not {now!r}; "
                     "try the same options, or another --out"
                 )
-        self._end_last_line()
+        self._lines.end_last_line()
 
     def add(self, run: FaultRun) -> None:
-        """Keep a result."""
-        with (self.folder / RESULTS).open("a", encoding="utf-8") as file:
-            file.write(run.model_dump_json() + "\n")
+        """Keep a result.
+
+        Raises:
+            InputError: It cannot be written; the run is repeated when the campaign goes on.
+        """
+        self._lines.add(run)
 
     def results(self) -> dict[str, FaultRun]:
         """Return the results so far by fault; a line that was cut off by a kill is left out."""
-        file = self.folder / RESULTS
-        if not file.exists():
-            return {}
-        found = {}
-        for line in file.read_text(encoding="utf-8").splitlines():
-            try:
-                run = FaultRun.model_validate_json(line)
-            except ValidationError:
-                continue
-            found[run.fault] = run
-        return found
+        return {run.fault: run for run in self._lines}
 
     def finished(self) -> dict[str, FaultRun]:
         """Return the results that need not be had again: those of runs that came to an end."""
         broken = ("died", "overdue")
         return {fault: run for fault, run in self.results().items() if run.outcome not in broken}
-
-    def _end_last_line(self) -> None:
-        """End a line that was cut off by a kill, so that the next result has its own."""
-        file = self.folder / RESULTS
-        if file.exists() and not file.read_bytes().endswith(b"\n"):
-            with file.open("a", encoding="utf-8") as lines:
-                lines.write("\n")
 
 
 def changed_sources(sources: Sequence[SourceFile]) -> list[str]:

@@ -14,8 +14,9 @@ from typer.testing import CliRunner
 
 from executive.cli.main import app
 from executive.core.errors import InputError
-from executive.engine.faults.store import PLAN, RESULTS, CampaignFolder, CampaignPlan, FaultRun
+from executive.engine.faults.store import CampaignFolder, CampaignPlan, FaultRun
 from executive.engine.recording.reader import Recording
+from executive.engine.result_folders import PLAN, RESULTS
 
 LIMIT_S = 60.0
 

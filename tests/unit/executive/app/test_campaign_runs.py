@@ -13,10 +13,11 @@ from toy_campaigns import cellwright, write_campaign
 
 from executive.app.campaigns.campaign import Campaign, Where
 from executive.app.campaigns.document import read_campaign
-from executive.app.campaigns.folder import LOCK, RESULTS, CampaignFolder
+from executive.app.campaigns.folder import LOCK, CampaignFolder
 from executive.app.campaigns.one_run import RECORDINGS
 from executive.core.errors import InputError
 from executive.engine.recording.reader import Recording
+from executive.engine.result_folders import RESULTS
 
 pytestmark = pytest.mark.filterwarnings("ignore::ResourceWarning")
 
