@@ -123,8 +123,7 @@ def cantilever_error(substep_s: float) -> float:
     """Let a stiff cable stand out beyond two supports; return the relative error of its droop.
 
     For a beam of bending stiffness B and weight w a length, on supports `a` apart, that stands out
-    by L, the tip droops by w L (3 L^3 + 4 L^2 a - a^3) / (24 B). The hands' forces act after
-    bending within a step, which leaves a kink at a support that fades with the length of steps.
+    by L, the tip droops by w L (3 L^3 + 4 L^2 a - a^3) / (24 B).
 
     Args:
         substep_s: Of the solver.

@@ -37,6 +37,8 @@ LARGEST_SPEED_M_S = 8.0
 CHAIN_NEIGHBOURS = 3
 # Rod segments this close to a grasp do not feel the fingers, which hold them.
 GRASP_NEIGHBOURS = 2
+# A push on a node bends the cable within a step as far as this on either side.
+RESPONSE_NODES = 12
 # Candidates are listed up to this distance, and anew when something has moved by half of it.
 SKIN_M = 0.008
 # Keeps divisions by lengths finite [m].
@@ -97,6 +99,9 @@ class Rings(NamedTuple):
     force: Floats  # (R, 3), mean force of the ring on the cable over the last advance
     guided: Ints  # (R,), scratch
     guides: Floats  # (R, 6), scratch: where a guided node was, and along which direction
+    pushes: Floats  # (R, 3), scratch: what a ring has done sideways so far in a step
+    solved: Ints  # (R,), scratch: the segment whose responses are known, or -1
+    responses: Floats  # (R, 2, N), scratch: moves of all nodes [1/kg] by a push on its two nodes
 
 
 class Constants(NamedTuple):
@@ -135,11 +140,13 @@ def advance(
         part_s, share = step_s / parts, 1.0 / (steps * parts)
         if parts != factored:
             _factor_bending(chain, constants, part_s)
+            rings.solved.fill(-1)
             factored = parts
         for part in range(parts):
             done = (step * parts + part + 1.0) * share
             _predict(chain, constants, part_s)
             _bend(chain, constants, part_s)
+            _hold_bent(chain, rings, constants, done, part_s, share)
             _stretch(chain, rings, constants, part_s, share)
             if _is_stale(chain, near, obstacles, done):
                 _list_pairs(chain, near, constants)
@@ -319,6 +326,28 @@ def _bend(chain: Chain, constants: Constants, step_s: float) -> None:
             if i < count - 2:
                 move[i, axis] -= factor[i + 2, 2] * move[i + 2, axis]
             x[i, axis] += move[i, axis]
+
+
+@kernel
+def _respond(chain: Chain, response: Floats, node: int) -> None:
+    """Write how far nodes move when one is pushed and bending acts within the same step.
+
+    This is a column of (M + (h^2 + h tau) K)^-1; far from the node it is as good as zero.
+    """
+    factor = chain.factor
+    low, high = max(0, node - RESPONSE_NODES), min(len(factor), node + RESPONSE_NODES + 1)
+    response.fill(0.0)
+    response[node] = 1.0
+    for i in range(node + 1, high):
+        response[i] = -factor[i, 1] * response[i - 1]
+        if i > node + 1:
+            response[i] -= factor[i, 2] * response[i - 2]
+    for i in range(high - 1, low - 1, -1):
+        response[i] /= factor[i, 0]
+        if i < high - 1:
+            response[i] -= factor[i + 1, 1] * response[i + 1]
+        if i < high - 2:
+            response[i] -= factor[i + 2, 2] * response[i + 2]
 
 
 @kernel
@@ -622,34 +651,86 @@ def _touch_obstacles(
 
 
 @kernel
+def _responses(chain: Chain, rings: Rings, r: int, segment: int) -> tuple[Floats, Floats]:
+    """Return how nodes move when a ring pushes on the first and on the second node it is at."""
+    first, second = rings.responses[r, 0], rings.responses[r, 1]
+    if rings.solved[r] != segment:
+        _respond(chain, first, segment)
+        _respond(chain, second, segment + 1)
+        rings.solved[r] = segment
+    return first, second
+
+
+@kernel
+def _hold_bent(
+    chain: Chain, rings: Rings, constants: Constants, done: float, step_s: float, share: float
+) -> None:
+    """Push each held point into its ring as one with the bending of this step.
+
+    Without this, bending would meet the ring's force a step late, and wait for it in a kink.
+    """
+    strongest = constants.overload_force * step_s**2
+    x = chain.positions
+    for r in range(len(rings.arc)):
+        i, f = _held_at(chain, rings, r)
+        first, second = _responses(chain, rings, r, i)
+        along, offset = _offset_in_ring(chain, rings, r, done)
+        offset = _sideways(offset, along)
+        aside = _length(offset) + TINY_M
+        yielding = (first[i] * (1.0 - f) + second[i] * f) * (1.0 - f)
+        yielding += (first[i + 1] * (1.0 - f) + second[i + 1] * f) * f
+        push = min(max(aside - rings.clearance[r], 0.0) / yielding, strongest)
+        back = _plus((0.0, 0.0, 0.0), -push / aside, offset)
+        rings.pushes[r, 0], rings.pushes[r, 1], rings.pushes[r, 2] = back
+        _add(rings.force, r, share / step_s**2, back)
+        for n in range(max(0, i - RESPONSE_NODES), min(len(x), i + RESPONSE_NODES + 2)):
+            _add(x, n, first[n] * (1.0 - f) + second[n] * f, back)
+
+
+@kernel
+def _held_at(chain: Chain, rings: Rings, r: int) -> tuple[int, float]:
+    """Return the segment that a ring is at, and where on it."""
+    i = min(int(rings.arc[r]), len(chain.positions) - 2)
+    return i, rings.arc[r] - i
+
+
+@kernel
+def _offset_in_ring(chain: Chain, rings: Rings, r: int, done: float) -> tuple[Vector, Vector]:
+    """Return the direction of the cable in a ring, and where it is from the ring's centre."""
+    x = chain.positions
+    i, f = _held_at(chain, rings, r)
+    centre = _between(_at(rings.start, r), _at(rings.end, r), done)
+    along = _minus(_at(x, i + 1), _at(x, i))
+    inverse = 1.0 / (_length(along) + TINY_M)
+    along = along[0] * inverse, along[1] * inverse, along[2] * inverse
+    return along, _minus(_between(_at(x, i), _at(x, i + 1), f), centre)
+
+
+@kernel
 def _hold(
     chain: Chain, rings: Rings, constants: Constants, done: float, step_s: float, share: float
 ) -> None:
     """Keep each held point in its ring; along the cable only as far as friction goes."""
     x, w = chain.positions, chain.inverse_masses
     for r in range(len(rings.arc)):
-        centre = _between(_at(rings.start, r), _at(rings.end, r), done)
-        i = min(int(rings.arc[r]), len(x) - 2)
-        f = rings.arc[r] - i
-        along = _minus(_at(x, i + 1), _at(x, i))
-        length = _length(along) + TINY_M
-        along = along[0] / length, along[1] / length, along[2] / length
-        offset = _minus(_between(_at(x, i), _at(x, i + 1), f), centre)
+        i, f = _held_at(chain, rings, r)
+        along, offset = _offset_in_ring(chain, rings, r, done)
         slip = _dot(offset, along)
         offset = _sideways(offset, along)
         aside = _length(offset) + TINY_M
         weight = w[i] * (1.0 - f) ** 2 + w[i + 1] * f**2
-        per_newton = step_s**2 * weight
-        strongest = constants.overload_force * per_newton
-        push = min(max(aside - rings.clearance[r], 0.0), strongest)
-        bound = rings.grip_force[r] * per_newton + rings.friction[r] * push
+        strongest = constants.overload_force * step_s**2
+        push = min(max(aside - rings.clearance[r], 0.0) / weight, strongest)
+        back = _plus((0.0, 0.0, 0.0), -push / aside, offset)
+        pushed = _length(_plus(_at(rings.pushes, r), 1.0, back))
+        bound = (rings.grip_force[r] * step_s**2 + rings.friction[r] * pushed) * weight
         stick = min(max(slip, -bound), bound)
         if stick != slip:
             low, high = rings.arc_limits[r, 0], rings.arc_limits[r, 1]
-            rings.arc[r] = min(max(rings.arc[r] - (slip - stick) / length, low), high)
+            gone = (slip - stick) / chain.rest_lengths[i]
+            rings.arc[r] = min(max(rings.arc[r] - gone, low), high)
             if rings.arc[r] in (low, high):
-                stick = min(max(slip, -strongest), strongest)
-        back = _plus((0.0, 0.0, 0.0), -push / aside / weight, offset)
+                stick = min(max(slip, -strongest * weight), strongest * weight)
         back = _plus(back, -stick / weight, along)
         _add(rings.force, r, share / step_s**2, back)
         _add(x, i, w[i] * (1.0 - f), back)

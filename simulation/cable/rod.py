@@ -261,7 +261,7 @@ class Rod:
 
     def _solve(self, strands: list[tuple[Hand, Strand]], duration_s: float) -> None:
         steps = max(1, round(duration_s / self.parameters.substep_s))
-        rings = _rings(strands, duration_s, self.parameters)
+        rings = _rings(strands, duration_s, self.parameters, len(self._chain.positions))
         kernels.advance(
             self._chain,
             self._near,
@@ -376,7 +376,7 @@ def _no_capsules() -> kernels.Obstacles:
 
 
 def _rings(
-    strands: list[tuple[Hand, Strand]], duration_s: float, parameters: RodParameters
+    strands: list[tuple[Hand, Strand]], duration_s: float, parameters: RodParameters, nodes: int
 ) -> kernels.Rings:
     count = len(strands)
     plug = _plug_nodes(parameters)
@@ -391,6 +391,9 @@ def _rings(
         force=np.zeros((count, 3)),
         guided=np.zeros(count, dtype=np.int64),
         guides=np.zeros((count, 6)),
+        pushes=np.zeros((count, 3)),
+        solved=np.full(count, -1),
+        responses=np.zeros((count, 2, nodes)),
     )
     for r, (hand, strand) in enumerate(strands):
         rings.start[r], rings.end[r] = hand.strand_path(strand, duration_s)
