@@ -1,6 +1,7 @@
 """Loosen or undo a knot: one hand cages the cable, the other pinches it, both pull apart."""
 
-from collections.abc import Generator, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Generator, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import Annotated
 
 import numpy as np
@@ -12,7 +13,7 @@ from perception.cable.polyline import arc_lengths
 from perception.cable.types import Crossing, Knot, Trace
 from perception.camera import CameraFrame
 from robots.interfaces import Arm, Floats, MotionFailure, TcpGoal
-from skills.cable.grasping import CLEARANCE_M, grasp_goal
+from skills.cable.grasping import CLEARANCE_M, LIFT_M, carried, grasp_goal
 from skills.cable.knot_sites import REACH_X_M, REACH_Y_M, Pair, given_pairs, searched_pairs
 from skills.cable.laying_out import Ends, Pull, best_places
 from skills.cable.policies import HoldAt
@@ -22,12 +23,34 @@ from skills.motion.goals import above
 # The hand that cages and the one that pinches.
 _Hands = tuple[Arm, Arm]
 
-LIFT_M = 0.03
 MOST_PAIRS = 60
 # Where the whole way apart is out of reach, these parts of it are tried in turn.
 SHARES_OF_TRAVEL = (1.0, 0.8, 0.6, 0.4, 0.2)
 # How many of the best places are tried before that.
 MOST_ENDS = 8
+# So many pairs of sites in reach are tried for a way to such a place.
+MOST_PULLS = 4
+
+UP_M = (np.array([0.0, 0.0, CLEARANCE_M]),)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Grip:
+    """A way to hold a knot.
+
+    Attributes:
+        hands: The hand that cages and the one that pinches.
+        goals: Where each of them takes hold.
+        pull: The same on the trace.
+        ends_m: Places for both to go to, the best first; none for straight apart.
+        onward_m: Straight motions of each from where it takes hold.
+    """
+
+    hands: _Hands
+    goals: tuple[TcpGoal, TcpGoal]
+    pull: Pull
+    ends_m: Sequence[Ends] = ()
+    onward_m: tuple[tuple[Floats, ...], tuple[Floats, ...]] = (UP_M, UP_M)
 
 
 class DilateKnot(ArmSkill):
@@ -61,15 +84,10 @@ class DilateKnot(ArmSkill):
             pairs = searched_pairs(trace, crossings, knots[0], frame)
         else:
             pairs = given_pairs(trace, knots[0], frame)
-        found = yield from self._reach_down(frame, pairs[:MOST_PAIRS])
+        found = yield from self._reach_down(frame, trace, pairs[:MOST_PAIRS], planned)
         if isinstance(found, MotionFailure):
             return failure(found.code, found.text, stage=found.stage)
-        hands, pair = found
-        pull = held_pull(frame, trace, *pair)
-        ends_m: Sequence[Ends] = ()
-        if planned:
-            left_first = hands[0] == "left"
-            ends_m = yield from self._worker.run(best_places, pull, left_first, MOST_ENDS)
+        hands, pull, ends_m = found.hands, found.pull, found.ends_m
         slides = not ends_m or pull.slides(ends_m[0])
         yield from self._set_grips({hands[0]: "cage" if slides else "pinch", hands[1]: "pinch"})
         missed = [arm for arm in hands if not self._arms.holds(arm)]
@@ -85,41 +103,63 @@ class DilateKnot(ArmSkill):
         return success()
 
     def _reach_down(
-        self, frame: CameraFrame, ranked: Sequence[Pair]
-    ) -> Generator[None, None, tuple[_Hands, Pair] | MotionFailure]:
+        self, frame: CameraFrame, trace: Trace, ranked: Sequence[Pair], planned: bool
+    ) -> Generator[None, None, "_Grip | MotionFailure"]:
         """Put both hands around the cable at the best pair of sites that they can reach.
 
         Returns:
-            The cage hand and the pinch hand with the pair, or why the last one that was tried
-            failed.
+            How the cable is held, or why the last pair that was tried failed.
         """
-        pairs = iter(ranked)
-        nowhere = "no two sites around the knot are apart and in reach"
-        failed = MotionFailure("motion.unreachable", "ik", nowhere)
+        grips = self._grips(frame, trace, ranked, planned)
+        failed = MotionFailure(
+            "motion.unreachable", "ik", "no two sites around the knot are apart and in reach"
+        )
         while True:
-            found = yield from self._worker.run(self._next_in_reach, frame, pairs, failed)
+            found = yield from self._worker.run(next, grips, failed)
             if isinstance(found, MotionFailure):
                 return found
-            hands, goals, pair = found
-            blocked = yield from self._descend(dict(zip(hands, goals, strict=True)), CLEARANCE_M)
+            goals = dict(zip(found.hands, found.goals, strict=True))
+            onward_m = dict(zip(found.hands, found.onward_m, strict=True))
+            blocked = yield from self._descend(goals, CLEARANCE_M, onward_m)
             if blocked is None:
-                return hands, pair
+                return found
             failed = blocked
 
-    def _next_in_reach(
-        self,
-        frame: CameraFrame,
-        pairs: Iterable[Pair],
-        failed: MotionFailure,
-    ) -> tuple[_Hands, tuple[TcpGoal, TcpGoal], Pair] | MotionFailure:
-        """Return hands and goals of the next pair that both can be above; else the last failure."""
-        for cage, pinch in pairs:
-            goals = (_goal(frame, cage), _goal(frame, pinch))
+    def _grips(
+        self, frame: CameraFrame, trace: Trace, ranked: Sequence[Pair], planned: bool
+    ) -> Iterator["_Grip"]:
+        """Yield ways to hold that both hands can come down to, those first that can go on."""
+        without = list[_Grip]()
+        for pair in ranked:
+            goals = (_goal(frame, pair[0]), _goal(frame, pair[1]))
             hands = self._arms.assign((above(goals[0], CLEARANCE_M), above(goals[1], CLEARANCE_M)))
-            if not isinstance(hands, MotionFailure):
-                return hands, goals, (cage, pinch)
-            failed = hands
-        return failed
+            if isinstance(hands, MotionFailure):
+                continue
+            grip = _Grip(hands, goals, held_pull(frame, trace, *pair))
+            if not planned:
+                yield grip
+                continue
+            without.append(grip)
+            yield from self._with_places(grip)
+            if len(without) == MOST_PULLS:
+                break
+        yield from without
+
+    def _with_places(self, grip: "_Grip") -> Iterator["_Grip"]:
+        """Yield the way to hold with the best places to go to that both hands can make."""
+        ends_m = best_places(grip.pull, grip.hands[0] == "left", MOST_ENDS)
+        for number, ends in enumerate(ends_m):
+            onward_m = tuple(
+                carried(np.append(end_m - goal.position_m[:2], 0.0))
+                for end_m, goal in zip(ends, grip.goals, strict=True)
+            )
+            hovers = tuple(
+                above(goal, CLEARANCE_M, *onward)
+                for goal, onward in zip(grip.goals, onward_m, strict=True)
+            )
+            if self._arms.assign((hovers[0], hovers[1])) == grip.hands:
+                yield replace(grip, ends_m=ends_m[number:], onward_m=(onward_m[0], onward_m[1]))
+                return
 
     def _pull_apart(
         self, hands: _Hands, travel_m: float, ends_m: Sequence[Ends] = ()

@@ -1,18 +1,24 @@
 """From image points on a cable to goals for a gripper that straddles it."""
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from itertools import islice
 
 import numpy as np
 
 from perception.cable.types import Points
 from perception.camera import CameraFrame
-from robots.interfaces import ARMS, Arm, DualArm, TcpGoal
+from robots.interfaces import ARMS, Arm, DualArm, Floats, TcpGoal
 from skills.motion.goals import above
 
 # Finger tips end 6 mm beyond the tool centre point: they stay 2 mm above the cloth and reach
 # past the axis of a cable of 6.6 mm diameter.
 GRASP_HEIGHT_M = 0.008
 CLEARANCE_M = 0.06
+# Held cable is carried at this height.
+LIFT_M = 0.03
+# So many places that an arm reaches are tried for a way to go on from there.
+MOST_HOLDS = 6
 
 
 def grasp_goal(frame: CameraFrame, point_px: Points, direction: Points) -> TcpGoal:
@@ -46,11 +52,51 @@ def nearest_arms(position_m: Points) -> tuple[Arm, Arm]:
     return ARMS if position_m[0] < 0.0 else (ARMS[1], ARMS[0])
 
 
-def first_reachable(arms: DualArm, goals: Iterable[TcpGoal]) -> tuple[Arm, TcpGoal] | None:
-    """Return the first goal that an arm can reach from above and rise from, with that arm."""
+@dataclass(frozen=True, slots=True, eq=False)
+class Carry:
+    """One hand that takes the cable along.
+
+    Attributes:
+        arm: Whose.
+        goal: Where it takes hold.
+        way_m: Level way that it goes with it, shape (3,).
+    """
+
+    arm: Arm
+    goal: TcpGoal
+    way_m: Floats
+
+    @property
+    def onward_m(self) -> tuple[Floats, ...]:
+        """Straight motions after it has come down: lift, go, lay down, rise."""
+        return carried(self.way_m)
+
+
+def carried(way_m: Floats) -> tuple[Floats, ...]:
+    """Return the straight motions of a hand that lifts, carries, lays down and rises."""
+    lift_m, rise_m = np.array([0.0, 0.0, LIFT_M]), np.array([0.0, 0.0, CLEARANCE_M])
+    return lift_m, way_m, -lift_m, rise_m
+
+
+def first_carry(
+    arms: DualArm, goals: Iterable[TcpGoal], ways_m: Callable[[TcpGoal], Iterable[Floats]]
+) -> Carry | None:
+    """Return the first goal and way that an arm can make from end to end.
+
+    Args:
+        arms: The arms.
+        goals: Where the cable may be taken, the best first.
+        ways_m: Level ways to go from a goal, the best first.
+    """
     up_m = np.array([0.0, 0.0, CLEARANCE_M])
-    for goal in goals:
-        for arm in nearest_arms(goal.position_m):
-            if arms.reachable(arm, above(goal, CLEARANCE_M, up_m)):
-                return arm, goal
+    within = (
+        (arm, goal)
+        for goal in goals
+        for arm in nearest_arms(goal.position_m)
+        if arms.reachable(arm, above(goal, CLEARANCE_M, up_m))
+    )
+    for arm, goal in islice(within, MOST_HOLDS):
+        for way_m in ways_m(goal):
+            if arms.reachable(arm, above(goal, CLEARANCE_M, *carried(way_m))):
+                return Carry(arm, goal, way_m)
     return None

@@ -6,21 +6,19 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from executive.core.outcome import Outcome, failure, success
 from executive.core.skill import SkillRun
 from executive.core.work import Worker
 from perception.cable.interfaces import CableVision
 from perception.cable.types import Points
 from perception.camera import CameraFrame
-from robots.interfaces import DualArm, Floats, MotionFailure
-from skills.cable.grasping import CLEARANCE_M, first_reachable, grasp_goal
-from skills.motion.arm_skill import MOTION_REASONS, ArmSkill
+from robots.interfaces import DualArm, Floats, TcpGoal
+from skills.cable.carrying import CarrySkill
+from skills.cable.grasping import grasp_goal
 
 # Thesis section 3.5: uniform displacement in a square of 10 cm x 10 cm.
 HALF_SQUARE_M = 0.05
 # Of so many random displacements the ones with the most room come first.
 DRAWS = 16
-LIFT_M = 0.03
 # How many of them are tried when the arm cannot make the first.
 MOST_STEPS = 6
 # Cable nearer than this to the held point moves along with it; on the side that leads, only
@@ -44,10 +42,8 @@ class Hold:
     leading_px: Points
 
 
-class ShiftSkill(ArmSkill):
+class ShiftSkill(CarrySkill):
     """Base of skills that grasp one place of the cable and shift it into free space."""
-
-    REASONS = MOTION_REASONS | {"grasp.unreachable", "grasp.missed"}
 
     def __init__(
         self, arms: DualArm, worker: Worker, vision: CableVision, rng: np.random.Generator
@@ -57,32 +53,15 @@ class ShiftSkill(ArmSkill):
         self._vision, self._rng = vision, rng
 
     def shift(self, frame: CameraFrame, holds: Sequence[Hold]) -> SkillRun:
-        """Grasp at the first hold that an arm reaches, lift, shift, lay down, rise."""
-        goals = [grasp_goal(frame, hold.point_px, hold.direction) for hold in holds]
-        found = yield from self._worker.run(first_reachable, self._arms, goals)
-        if found is None:
-            return failure("grasp.unreachable", "no arm reaches the cable", holds=len(holds))
-        arm, goal = found
-        failed = yield from self._descend({arm: goal}, CLEARANCE_M)
-        if failed is not None:
-            return _outcome(failed)
-        yield from self._set_grips({arm: "pinch"})
-        if not self._arms.holds(arm):
-            yield from self._release((arm,), CLEARANCE_M)
-            return failure("grasp.missed", f"the {arm} gripper closed on nothing")
-        hold = holds[goals.index(goal)]
+        """Grasp at the first hold that an arm can carry, lift, shift, lay down, rise."""
         cable = yield from self._worker.run(self._vision.cable_pixels, frame.image)
-        room = room_map(cable, hold)
-        lift_m = np.array([0.0, 0.0, LIFT_M])
-        failed = yield from self._move_by({arm: lift_m})
-        for step_m in roomiest_steps(frame, hold.leading_px, room, self._rng):
-            failed = yield from self._move_by({arm: step_m})
-            if failed is None:
-                break
-        laid = yield from self._move_by({arm: -lift_m})
-        failed = failed or laid
-        risen = yield from self._release((arm,), CLEARANCE_M)
-        return _outcome(failed or risen)
+        goals = [grasp_goal(frame, hold.point_px, hold.direction) for hold in holds]
+
+        def ways_m(goal: TcpGoal) -> list[Floats]:
+            hold = holds[goals.index(goal)]
+            return roomiest_steps(frame, hold.leading_px, room_map(cable, hold), self._rng)
+
+        return (yield from self.carry(goals, ways_m))
 
 
 Room = Callable[[Points], float]
@@ -124,9 +103,3 @@ def roomiest_steps(
     ]
     order = np.argsort([-room for room in rooms_px], kind="stable")
     return [steps_m[number] for number in order[:MOST_STEPS]]
-
-
-def _outcome(failed: MotionFailure | None) -> Outcome:
-    if failed is not None:
-        return failure(failed.code, failed.text, stage=failed.stage)
-    return success()

@@ -3,7 +3,7 @@
 The pieces are generators that `yield` while something is planned or moves, for `yield from`.
 """
 
-from collections.abc import Callable, Generator, Mapping
+from collections.abc import Callable, Generator, Mapping, Sequence
 from typing import ParamSpec
 
 import numpy as np
@@ -73,13 +73,22 @@ class ArmSkill(Skill):
         while self._arms.moving():
             yield
 
-    def _descend(self, goals: Mapping[Arm, TcpGoal], clearance_m: float) -> MotionSteps:
+    def _descend(
+        self,
+        goals: Mapping[Arm, TcpGoal],
+        clearance_m: float,
+        onward_m: Mapping[Arm, Sequence[Floats]] | None = None,
+    ) -> MotionSteps:
         """Go to `clearance_m` above each goal, then straight down onto it.
 
-        Configurations are chosen from which the tool can also go straight up again.
+        Args:
+            goals: Where tools go.
+            clearance_m: From how high they come straight down.
+            onward_m: Straight motions from there that each arm's configuration must allow; by
+                default straight up again.
         """
-        up_m = np.array([0.0, 0.0, clearance_m])
-        hover = {arm: above(goal, clearance_m, up_m) for arm, goal in goals.items()}
+        onward_m = onward_m or dict.fromkeys(goals, (np.array([0.0, 0.0, clearance_m]),))
+        hover = {arm: above(goal, clearance_m, *onward_m[arm]) for arm, goal in goals.items()}
         failed = yield from self._move(self._arms.plan, hover)
         if failed is not None:
             return failed

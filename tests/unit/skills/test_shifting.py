@@ -42,13 +42,13 @@ def test_an_end_out_of_reach_is_said_to_be():
     assert outcome.reason.code == "grasp.unreachable"
 
 
-def test_a_blocked_shift_is_tried_another_way():
+def test_a_blocked_shift_is_tried_less_far():
     arms = ArrivingArms()
     skill = PerturbEndpoint(arms, InlineWorker(), BlindVision(), np.random.default_rng(3))
     skill.start({"frame": frame(), "endpoints": (end_at(560.0),)})
     while len([entry for entry in arms.log if entry[0] == "move"]) < 3:
         skill.step()
-    arms.lines_blocked = 3
+    arms.lines_blocked = 2
     while (outcome := skill.step()).status == "RUNNING":
         pass
     assert outcome.status == "SUCCESS"

@@ -184,13 +184,17 @@ def test_what_cannot_be_traced_is_loosened_by_who_disambiguates(policy):
     assert acts[0] == ("partial_dilation" if POLICIES[policy].disambiguates else "dilate_knot")
 
 
-@pytest.mark.parametrize("policy", ["default", "tusk"])
-def test_an_end_that_gives_no_start_is_freed(policy):
-    assert flown(Look(start=False), DONE, policy=policy)[1] == ["perturb_endpoint"]
+def test_an_end_that_gives_no_start_is_freed_where_traces_need_one():
+    assert flown(Look(start=False), DONE, policy="tusk")[1] == ["perturb_endpoint"]
+
+
+def test_who_goes_by_belief_traces_from_an_end_among_strands_all_the_same():
+    result, acts, _ = flown(replace(DONE, start=False), policy="default")
+    assert (result.claim.untangled, acts) == (True, [])
 
 
 def test_without_interactive_perception_it_only_looks_again():
-    result, acts, _ = flown(Look(start=False), Look(ends=0), DONE, policy="no_interactive")
+    result, acts, _ = flown(Look(ends=0), Look(ends=0), DONE, policy="no_interactive")
     assert (result.outcome, acts) == (MissionOutcome.SUCCESS, [])
 
 

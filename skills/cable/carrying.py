@@ -1,0 +1,57 @@
+"""Take the cable with one hand, carry it a little way, lay it down."""
+
+from collections.abc import Callable, Iterable
+
+import numpy as np
+
+from executive.core.outcome import Outcome, failure, success
+from executive.core.skill import SkillRun
+from robots.interfaces import Floats, MotionFailure, TcpGoal
+from skills.cable.grasping import CLEARANCE_M, LIFT_M, first_carry
+from skills.motion.arm_skill import MOTION_REASONS, ArmSkill
+
+# Where the other arm turns out to be in the way, these parts of it are tried in turn.
+SHARES_OF_WAY = (1.0, 0.6, 0.3)
+
+
+class CarrySkill(ArmSkill):
+    """Base of skills that grasp one place of the cable and carry it somewhere."""
+
+    REASONS = MOTION_REASONS | {"grasp.unreachable", "grasp.missed"}
+
+    def carry(
+        self, goals: Iterable[TcpGoal], ways_m: Callable[[TcpGoal], Iterable[Floats]]
+    ) -> SkillRun:
+        """Grasp where an arm can make a whole way, lift, go, lay down, rise.
+
+        Args:
+            goals: Where the cable may be taken, the best first.
+            ways_m: Level ways to go from a goal, the best first.
+        """
+        found = yield from self._worker.run(first_carry, self._arms, goals, ways_m)
+        if found is None:
+            return failure("grasp.unreachable", "no arm can take the cable and go on with it")
+        arm = found.arm
+        failed = yield from self._descend({arm: found.goal}, CLEARANCE_M, {arm: found.onward_m})
+        if failed is not None:
+            return motion_outcome(failed)
+        yield from self._set_grips({arm: "pinch"})
+        if not self._arms.holds(arm):
+            yield from self._release((arm,), CLEARANCE_M)
+            return failure("grasp.missed", f"the {arm} gripper closed on nothing")
+        lift_m = np.array([0.0, 0.0, LIFT_M])
+        failed = yield from self._move_by({arm: lift_m})
+        for share in SHARES_OF_WAY:
+            failed = yield from self._move_by({arm: share * found.way_m})
+            if failed is None:
+                break
+        laid = yield from self._move_by({arm: -lift_m})
+        risen = yield from self._release((arm,), CLEARANCE_M)
+        return motion_outcome(failed or laid or risen)
+
+
+def motion_outcome(failed: MotionFailure | None) -> Outcome:
+    """Return the outcome of motions of which maybe one has failed."""
+    if failed is not None:
+        return failure(failed.code, failed.text, stage=failed.stage)
+    return success()
