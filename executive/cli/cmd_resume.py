@@ -113,9 +113,11 @@ def _prepared(
     consent = Consent(request.anyway, request.as_it_stands)
     mission, notes = recorded_mission(header, consent, skills=skills(), types=types)
     # Only now, with the input in order, is it worth loading simulators and planners.
+    from executive.app.cell_locks import running
     from executive.app.compose import open_cell
     from executive.engine.running.mission_run import RunPlan, default_recording
 
+    stack.enter_context(running(mission))
     with control.interruptible(), console.status(f"opening {mission.document.cell}"):
         cell = open_cell(mission.cell, header.scenario, header.seed)
     stack.enter_context(closing(cell))

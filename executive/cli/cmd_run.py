@@ -105,6 +105,7 @@ def _prepared(
     injections = _injections(request)
     require_free(request.record, overwrite=request.overwrite)
     # Only now, with the input in order, is it worth loading simulators and planners.
+    from executive.app.cell_locks import running
     from executive.app.compose import open_cell
     from executive.engine.nodes.builder import build
     from executive.engine.running.mission_run import RunPlan, default_recording
@@ -118,6 +119,7 @@ def _prepared(
         recording=request.record or default_recording(mission.document.name, request.seed),
         faults=injections,
     )
+    stack.enter_context(running(mission))
     with control.interruptible(), console.status(f"opening {mission.document.cell}"):
         cell = open_cell(mission.cell, settings.scenario, request.seed)
     stack.enter_context(closing(cell))

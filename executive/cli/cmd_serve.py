@@ -43,7 +43,8 @@ def serve(
     CELLWRIGHT_TOKEN; one is made and printed where there is none. Ctrl-C stops the mission that
     runs, in order, and ends the service.
     """
-    from executive.app.service.cell_service import CellService, lock_of
+    from executive.app.cell_locks import lock_of
+    from executive.app.service.cell_service import CellService
 
     document, file = _cell(cell)
     token = None if is_loopback(host) else _token()

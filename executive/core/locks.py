@@ -1,4 +1,4 @@
-"""A file that only one process can hold: of a cell, or of a folder that somebody writes to."""
+"""A file that one process can hold, or some that share it: of a cell, or of a folder of results."""
 
 import fcntl
 import os
@@ -15,32 +15,41 @@ class FileLock:
     The file stays, with the process that had it last: to remove it would let two in.
     """
 
-    def __init__(self, file: Path, what: str) -> None:
-        """Name the file and what it stands for, as in `the cell 'yumi_table'`."""
-        self._file, self._what = file, what
+    def __init__(self, file: Path, what: str, holder: str = "", *, shared: bool = False) -> None:
+        """Prepare.
+
+        Args:
+            file: The file; made where there is none.
+            what: What it stands for, as in `the cell 'yumi_table'`.
+            holder: Who will hold it, for those that are refused.
+            shared: Whether others that share it may hold it as well.
+        """
+        self._file, self._what, self._holder = file, what, holder
+        self._way = fcntl.LOCK_SH if shared else fcntl.LOCK_EX
         self._descriptor = -1
 
     def __enter__(self) -> Self:
         """Take it.
 
         Raises:
-            InputError: Another process has it, or the file cannot be written.
+            InputError: Another process has it and does not share it, or the file cannot be written.
         """
         try:
             self._descriptor = os.open(self._file, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o600)
         except OSError as error:
             raise InputError(f"{self._file}: cannot be locked; got {error.strerror}") from None
         try:
-            fcntl.flock(self._descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            fcntl.flock(self._descriptor, self._way | fcntl.LOCK_NB)
         except OSError:
-            holder = os.read(self._descriptor, 64).decode(errors="replace").strip()
+            holder = os.read(self._descriptor, 256).decode(errors="replace").strip()
             self._let_go()
             raise InputError(
                 f"{self._what} is held by another process ({holder or 'unknown'}); "
                 "expected to be the only one; try again when that one has ended"
             ) from None
         os.truncate(self._descriptor, 0)
-        os.pwrite(self._descriptor, f"process {os.getpid()}\n".encode(), 0)
+        held_by = ", ".join(filter(None, (f"process {os.getpid()}", self._holder)))
+        os.pwrite(self._descriptor, f"{held_by}\n".encode(), 0)
         return self
 
     def __exit__(

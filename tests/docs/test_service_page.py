@@ -1,10 +1,12 @@
 """The page on the service against the code: its commands work, and it names what there is."""
 
 import json
+import os
 import re
 import shlex
 import subprocess
 import sys
+import tempfile
 import time
 from pathlib import Path
 from urllib.error import URLError
@@ -41,7 +43,18 @@ def port(tmp_path):
     (tmp_path / "fetch.yaml").write_text(MISSION)
     words = shlex.split(blocks()[0].replace("8420", "0").replace("4840", "0"))
     command = [str(Path(sys.executable).with_name("cellwright")), *words[1:]]
-    with subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.PIPE, text=True) as process:
+    # Locks of cells are there; a test beside this one may run a mission on the same cell. The path
+    # of a socket has to be short, which that of tmp_path may not be.
+    with (
+        tempfile.TemporaryDirectory() as own,
+        subprocess.Popen(
+            command,
+            cwd=tmp_path,
+            stderr=subprocess.PIPE,
+            text=True,
+            env={**os.environ, "TMPDIR": own},
+        ) as process,
+    ):
         lines = iter(process.stderr.readline, "")
         found = next(m[1] for line in lines if (m := re.search(r"127\.0\.0\.1:(\d+)/open", line)))
         assert any("opc.tcp://127.0.0.1" in line for line in lines)

@@ -4,7 +4,6 @@ After a stop, or a mission that was lost with its process, the cell is *held*: w
 waits until somebody says to go on.
 """
 
-import hashlib
 import threading
 from collections import OrderedDict
 from collections.abc import Callable, Sequence
@@ -12,6 +11,7 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import Literal
 
+from executive.app.cell_locks import serving
 from executive.app.missions import load, settings_of
 from executive.app.service.journal import KEPT, Journal
 from executive.app.service.messages import (
@@ -24,10 +24,9 @@ from executive.app.service.messages import (
 from executive.app.service.mission_process import MissionProcess, run_words
 from executive.app.service.tick_feed import TickFeed
 from executive.core.errors import InputError
-from executive.core.locks import FileLock
 from executive.core.registry import closest
 from executive.engine.recording.messages import RunReport
-from executive.engine.running.remote import NotRunningError, runtime_folder
+from executive.engine.running.remote import NotRunningError
 
 MOST_QUEUED = 100
 POLL_S = 0.1
@@ -83,7 +82,7 @@ class CellService:
         Raises:
             InputError: Another process holds it.
         """
-        self._stack.enter_context(FileLock(self._lock, f"the cell {self._cell!r}"))
+        self._stack.enter_context(serving(self._cell, self._lock))
         self._know_again(self._journal.read())
         self._journal.begin(self._missions.values())
         thread = threading.Thread(target=self._work, name="missions")
@@ -349,7 +348,7 @@ class CellService:
             )
             words = self._words(view)
             self._feed = feed = TickFeed(number, recording)
-            self._process = process = MissionProcess(words, recording)
+            self._process = process = MissionProcess(words, recording, self._lock)
             stopping = self._state == "stopping" or self._closed
         if stopping:
             process.stop()
@@ -393,14 +392,3 @@ class CellService:
             self._running, self._process, self._last = None, None, view.id
             self._state = "held" if self._why_held else "idle"
             self._changed.notify_all()
-
-
-def lock_of(cell: str, file: Path) -> Path:
-    """Return the file that whoever holds a cell holds.
-
-    Args:
-        cell: Its name.
-        file: Its document: cells of two projects may have one name.
-    """
-    mark = hashlib.sha256(str(file).encode()).hexdigest()[:12]
-    return runtime_folder() / f"cell-{cell}-{mark}.lock"

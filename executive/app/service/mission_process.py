@@ -17,6 +17,7 @@ from typing import Literal
 
 from pydantic import ValidationError
 
+from executive.app.cell_locks import HELD_VARIABLE
 from executive.app.service.messages import MissionRequest
 from executive.core.errors import InputError
 from executive.engine.recording.messages import RunReport
@@ -49,8 +50,14 @@ def run_words(request: MissionRequest) -> list[str]:
 class MissionProcess:
     """One mission under way."""
 
-    def __init__(self, words: Sequence[str], recording: Path) -> None:
-        """Start it."""
+    def __init__(self, words: Sequence[str], recording: Path, lock: Path) -> None:
+        """Start it.
+
+        Args:
+            words: Its command line, without the recording.
+            recording: Where it is recorded.
+            lock: The lock of the cell, which the service holds for it.
+        """
         self.recording = recording
         self._log = recording.with_suffix(".log")
         self._stopped_s: float | None = None
@@ -64,6 +71,7 @@ class MissionProcess:
                     stdout=subprocess.PIPE,
                     stderr=log,
                     start_new_session=True,
+                    env={**os.environ, HELD_VARIABLE: str(lock)},
                 )
         except BaseException:
             os.close(self._held)

@@ -44,10 +44,12 @@ class Mission(Program):
     Attributes:
         document: What the mission file says.
         cell: What the file of its cell says.
+        cell_file: That file.
     """
 
     document: MissionDocument
     cell: CellDocument
+    cell_file: Path
 
     @property
     def name(self) -> str:
@@ -100,7 +102,13 @@ def load_mission(
     if loading.faults or program is None or cell is None or document is None:
         raise DocumentError(loading.faults)
     return Mission(
-        program.tree, program.subtrees, program.skills, loading.library.sources, document, cell
+        program.tree,
+        program.subtrees,
+        program.skills,
+        loading.library.sources,
+        document,
+        cell,
+        loading.library.find(document.cell, "cell"),
     )
 
 
