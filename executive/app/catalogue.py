@@ -46,6 +46,7 @@ _SKILLS: Final = {
     "trace_cable": "skills.cable.trace_cable:TraceCable",
     "update_belief": "skills.shelf.update_belief:UpdateBelief",
     "verify_target": "skills.shelf.verify_target:VerifyTarget",
+    "weigh_look": "skills.cable.weigh_look:WeighLook",
 }
 _PORT_TYPES: Final = {
     "bool": "builtins:bool",
