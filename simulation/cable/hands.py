@@ -1,5 +1,6 @@
 """Grippers as the cable feels them: what they take, and how they hold it."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Literal
 
@@ -26,7 +27,7 @@ class Strand:
     Attributes:
         mode: How it is held.
         arc: Where along the chain, in segments from the first node.
-        nodes: Number of nodes of the chain.
+        span: First and last node of the cable.
         p_tcp_m: Where it is held in the tool frame, shape (3,).
         rest_x_m: Where along the opening direction closed fingers hold it.
         force_n: Force of the hand on it over the last advance, world frame, shape (3,).
@@ -34,15 +35,20 @@ class Strand:
 
     mode: GraspMode
     arc: float
-    nodes: int
+    span: tuple[int, int]
     p_tcp_m: Floats
     rest_x_m: float
     force_n: Floats = field(default_factory=lambda: np.zeros(3))
 
     def arc_limits(self, plug_nodes: int) -> tuple[float, float]:
         """Return how far it may slide: a plug does not pass, but may be what is held."""
-        last = self.nodes - 1.0
-        return (min(float(plug_nodes), self.arc), max(last - plug_nodes, self.arc))
+        first, last = self.span
+        return (min(float(first + plug_nodes), self.arc), max(float(last - plug_nodes), self.arc))
+
+    def held_m(self, nodes_m: Floats) -> Floats:
+        """Return where that point of the cable is, given all nodes, shape (3,)."""
+        first, last = self.span
+        return point_on(nodes_m[first : last + 1], self.arc - first)
 
     def closed_by(self, duration_s: float) -> Floats:
         """Return where closing fingers hold it after that time, tool frame, shape (3,)."""
@@ -61,21 +67,37 @@ class Hand:
         self.strands: tuple[Strand, ...] = ()
 
     def close(
-        self, mode: GraspMode, nodes_m: Floats, opening_m: Floats, parameters: RodParameters
+        self,
+        mode: GraspMode,
+        nodes_m: Floats,
+        spans: Sequence[tuple[int, int]],
+        opening_m: Floats,
+        parameters: RodParameters,
     ) -> None:
-        """Take every strand that passes between the fingers; opening is (gap, width, depth)."""
+        """Take every strand that passes between the fingers.
+
+        Args:
+            mode: What the fingers do.
+            nodes_m: Of all cables, shape (N, 3).
+            spans: First and last node of each cable.
+            opening_m: Gap, width and depth of what is between the fingers.
+            parameters: What the cables are made of.
+        """
         rotation, origin = self.pose[:3, :3], self.pose[:3, 3]
         local = (nodes_m - origin) @ rotation
         half = 0.5 * opening_m
         low = np.array([-half[0], -half[1], -opening_m[2]])
         high = np.array([half[0], half[1], TIP_BEYOND_TCP_M])
-        spans = strands_in_box(local, low, high)
-        held = [(arc, point_on(local, arc)) for arc in spans]
-        held.sort(key=lambda item: (item[1][0], item[0]))
+        held = [
+            (first + arc, (first, last), point_on(local[first : last + 1], arc))
+            for first, last in spans
+            for arc in strands_in_box(local[first : last + 1], low, high)
+        ]
+        held.sort(key=lambda item: (item[2][0], item[0]))
         middle = 0.5 * (len(held) - 1)
         self.strands = tuple(
-            Strand(mode, arc, len(nodes_m), point, (rank - middle) * 2.0 * parameters.radius_m)
-            for rank, (arc, point) in enumerate(held)
+            Strand(mode, arc, span, point, (rank - middle) * 2.0 * parameters.radius_m)
+            for rank, (arc, span, point) in enumerate(held)
         )
 
     def strand_path(self, strand: Strand, duration_s: float) -> tuple[Floats, Floats]:
@@ -92,7 +114,7 @@ class Hand:
         self.strands = tuple(
             strand
             for strand in self.strands
-            if np.linalg.norm(self._point(strand.p_tcp_m) - point_on(nodes_m, strand.arc)) < tear_m
+            if np.linalg.norm(self._point(strand.p_tcp_m) - strand.held_m(nodes_m)) < tear_m
         )
 
     def _point(self, p_tcp_m: Floats) -> Floats:

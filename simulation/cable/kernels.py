@@ -46,14 +46,15 @@ TINY_M = 1e-12
 
 
 class Chain(NamedTuple):
-    """State of the rod; N nodes, N - 1 segments."""
+    """State of all cables, one after another; N nodes, N - 1 segments."""
 
     positions: Floats  # (N, 3)
     previous: Floats  # (N, 3)
     velocities: Floats  # (N, 3)
     inverse_masses: Floats  # (N,)
-    rest_lengths: Floats  # (N - 1,)
-    bending_stiffness: Floats  # (N,), B / ds^3, zero at both ends
+    rest_lengths: Floats  # (N - 1,), zero between two cables
+    cables: Ints  # (N - 1,), which cable a segment belongs to; -1 between two
+    bending_stiffness: Floats  # (N,), B / ds^3, zero at both ends of each cable
     factor: Floats  # (N, 3), of the bending step: diagonal, first and second below it
     moves: Floats  # (N, 3), scratch
     tensions: Floats  # (N - 1,), mean over the last advance [N]
@@ -93,6 +94,7 @@ class Rings(NamedTuple):
     end: Floats  # (R, 3)
     arc: Floats  # (R,), material coordinate in segments
     arc_limits: Floats  # (R, 2)
+    spans: Ints  # (R, 2), first and last node of the cable
     clearance: Floats  # (R,)
     grip_force: Floats  # (R,), friction force that needs no normal force
     friction: Floats  # (R,)
@@ -369,8 +371,12 @@ def _stretch(chain: Chain, rings: Rings, constants: Constants, step_s: float, sh
         g[i, 0], g[i, 1], g[i, 2] = along[0] * inverse, along[1] * inverse, along[2] * inverse
         diagonal[i] = w[i] + w[i + 1] + compliance * chain.rest_lengths[i]
         impulses[i] = length - chain.rest_lengths[i]
+        if chain.cables[i] < 0:
+            diagonal[i], impulses[i] = 1.0, 0.0
     for i in range(count - 1):
         coupling[i] = -w[i + 1] * _dot(_at(g, i), _at(g, i + 1))
+        if chain.cables[i] != chain.cables[i + 1]:
+            coupling[i] = 0.0
     for r in range(guides):
         n, along = rings.guided[r], _guide_direction(rings, r)
         into, out = _dot(along, _at(g, n - 1)), _dot(along, _at(g, n))
@@ -406,7 +412,7 @@ def _choose_guides(chain: Chain, rings: Rings, overload: float) -> int:
     x, pulls = chain.positions, chain.impulses
     count = 0
     for r in range(len(rings.arc)):
-        node = min(max(int(rings.arc[r] + 0.5), 1), len(x) - 2)
+        node = min(max(int(rings.arc[r] + 0.5), rings.spans[r, 0] + 1), rings.spans[r, 1] - 1)
         known = max(pulls[node - 1], pulls[node]) > overload
         for other in range(count):
             known = known or rings.guided[other] == node
@@ -453,6 +459,14 @@ def _is_stale(chain: Chain, near: Neighbours, obstacles: Obstacles, done: float)
 
 
 @kernel
+def _may_touch(cables: Ints, a: int, b: int) -> bool:
+    """Return whether two segments are of cable, and not neighbours along the same one."""
+    if cables[a] < 0 or cables[b] < 0:
+        return False
+    return cables[a] != cables[b] or b - a >= CHAIN_NEIGHBOURS
+
+
+@kernel
 def _list_pairs(chain: Chain, near: Neighbours, constants: Constants) -> None:
     """Sweep along x over segments sorted by their start."""
     x, order = chain.positions, near.order
@@ -475,7 +489,7 @@ def _list_pairs(chain: Chain, near: Neighbours, constants: Constants) -> None:
             a, b = min(order[n], order[later]), max(order[n], order[later])
             if x[order[later], 0] - x[order[n], 0] > apart:
                 break
-            if b - a < CHAIN_NEIGHBOURS or abs(x[a, 1] - x[b, 1]) > apart:
+            if abs(x[a, 1] - x[b, 1]) > apart or not _may_touch(chain.cables, a, b):
                 continue
             s, t = _closest(_at(x, a), _at(x, a + 1), _at(x, b), _at(x, b + 1))
             gap = _gap(x, a, s, b, t)
@@ -512,7 +526,7 @@ def _list_obstacle_pairs(
             near.obstacle_reference[m, k] = first[k]
             near.obstacle_reference[m, k + 3] = second[k]
         for i in range(len(chain.rest_lengths)):
-            outside = False
+            outside = chain.cables[i] < 0
             for k in range(3):
                 low, high = min(first[k], second[k]) - reach, max(first[k], second[k]) + reach
                 if max(x[i, k], x[i + 1, k]) < low or min(x[i, k], x[i + 1, k]) > high:
@@ -672,7 +686,7 @@ def _hold_bent(
     strongest = constants.overload_force * step_s**2
     x = chain.positions
     for r in range(len(rings.arc)):
-        i, f = _held_at(chain, rings, r)
+        i, f = _held_at(rings, r)
         first, second = _responses(chain, rings, r, i)
         along, offset = _offset_in_ring(chain, rings, r, done)
         offset = _sideways(offset, along)
@@ -688,9 +702,9 @@ def _hold_bent(
 
 
 @kernel
-def _held_at(chain: Chain, rings: Rings, r: int) -> tuple[int, float]:
+def _held_at(rings: Rings, r: int) -> tuple[int, float]:
     """Return the segment that a ring is at, and where on it."""
-    i = min(int(rings.arc[r]), len(chain.positions) - 2)
+    i = min(int(rings.arc[r]), rings.spans[r, 1] - 1)
     return i, rings.arc[r] - i
 
 
@@ -698,7 +712,7 @@ def _held_at(chain: Chain, rings: Rings, r: int) -> tuple[int, float]:
 def _offset_in_ring(chain: Chain, rings: Rings, r: int, done: float) -> tuple[Vector, Vector]:
     """Return the direction of the cable in a ring, and where it is from the ring's centre."""
     x = chain.positions
-    i, f = _held_at(chain, rings, r)
+    i, f = _held_at(rings, r)
     centre = _between(_at(rings.start, r), _at(rings.end, r), done)
     along = _minus(_at(x, i + 1), _at(x, i))
     inverse = 1.0 / (_length(along) + TINY_M)
@@ -713,7 +727,7 @@ def _hold(
     """Keep each held point in its ring; along the cable only as far as friction goes."""
     x, w = chain.positions, chain.inverse_masses
     for r in range(len(rings.arc)):
-        i, f = _held_at(chain, rings, r)
+        i, f = _held_at(rings, r)
         along, offset = _offset_in_ring(chain, rings, r, done)
         slip = _dot(offset, along)
         offset = _sideways(offset, along)

@@ -1,6 +1,6 @@
-"""The cable as a thing to be pushed, held and pulled; the solver is in `kernels`."""
+"""Cables as things to be pushed, held and pulled; the solver is in `kernels`."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 
 import numpy as np
@@ -10,45 +10,60 @@ from executive.core.errors import InputError
 from simulation.cable import kernels
 from simulation.cable.hands import GraspMode, Hand, Strand
 from simulation.cable.parameters import RodParameters
+from simulation.cable.rod_parts import (
+    chain_of,
+    constants_of,
+    neighbours_of,
+    no_capsules,
+    plug_nodes,
+    plug_pose,
+    rings_of,
+)
 from simulation.cable.rod_state import RodState, fill_chain, fill_neighbours
 
 Floats = NDArray[np.float64]
 
-# Room in the candidate lists: a bundle of twenty strands touching all along stays below it.
-PAIRS_PER_NODE = 40
 # How long a cable must have kept still to be at rest.
 REST_WINDOW_S = 0.1
 
 
 class Rod:
-    """A cable on a table, seen as a chain of nodes.
+    """One cable or several on a table, each seen as a chain of nodes.
+
+    Nodes of several cables are numbered through, in the order of the cables.
 
     Time passes only in `advance`; what is set before it (obstacles, hands) is where things are
     at the end of that advance, and is interpolated on the way. Equal calls give bit-equal
     results.
     """
 
-    def __init__(self, nodes_m: Floats, parameters: RodParameters | None = None) -> None:
-        """Lay the cable along `nodes_m`.
+    def __init__(
+        self, nodes_m: Floats | Sequence[Floats], parameters: RodParameters | None = None
+    ) -> None:
+        """Lay the cable along `nodes_m`, or several cables along as many lines.
 
         Args:
-            nodes_m: Centre line [m], shape (N, 3), N >= 4, world frame; the distance of
-                neighbours becomes their rest length.
-            parameters: What the cable is made of.
+            nodes_m: Centre line [m], shape (N, 3), N >= 4, world frame, or a sequence of such
+                lines; the distance of neighbours becomes their rest length.
+            parameters: What the cables are made of.
 
         Raises:
-            InputError: The shape is wrong or a number is not finite.
+            InputError: The shape is wrong, a number is not finite, or there is no cable.
         """
-        nodes_m = np.array(nodes_m, dtype=np.float64)
-        if nodes_m.ndim != 2 or nodes_m.shape[1] != 3 or len(nodes_m) < 4:
-            raise InputError(f"Rod: nodes; got shape {nodes_m.shape}; expected (N, 3) with N >= 4")
-        if not np.isfinite(nodes_m).all():
-            raise InputError("Rod: nodes; got a number that is not finite; expected metres")
+        lines_m = (nodes_m,) if isinstance(nodes_m, np.ndarray) else tuple(nodes_m)
+        lines_m = tuple(_checked(line_m) for line_m in lines_m)
+        if not lines_m:
+            raise InputError("Rod: nodes; got no cable; expected at least one")
         self.parameters = parameters or RodParameters()
-        self._chain = _chain(nodes_m, self.parameters)
-        self._near = _neighbours(len(nodes_m), 0)
-        self._constants = _constants(self.parameters)
-        self._capsules = _no_capsules()
+        ends = np.cumsum([len(line_m) for line_m in lines_m]).tolist()
+        self._spans = tuple(
+            (end - len(line_m), end - 1) for line_m, end in zip(lines_m, ends, strict=True)
+        )
+        nodes_m = np.vstack(lines_m)
+        self._chain = chain_of(lines_m, self.parameters)
+        self._near = neighbours_of(len(nodes_m), 0)
+        self._constants = constants_of(self.parameters)
+        self._capsules = no_capsules()
         self._next_capsules = self._capsules
         self._hands: dict[str, Hand] = {}
         self.time_s = 0.0
@@ -57,8 +72,14 @@ class Rod:
 
     @property
     def positions_m(self) -> Floats:
-        """Node positions in the world, shape (N, 3); a read-only view."""
+        """Node positions in the world, of all cables, shape (N, 3); a read-only view."""
         return _read_only(self._chain.positions)
+
+    @property
+    def lines_m(self) -> tuple[Floats, ...]:
+        """Node positions of each cable, shape (N_k, 3); read-only views."""
+        x = self.positions_m
+        return tuple(x[first : last + 1] for first, last in self._spans)
 
     @property
     def velocities_m_s(self) -> Floats:
@@ -72,8 +93,9 @@ class Rod:
 
     @property
     def length_m(self) -> float:
-        """Length of the centre line now."""
-        return float(np.linalg.norm(np.diff(self._chain.positions, axis=0), axis=1).sum())
+        """Length of all centre lines together now."""
+        steps = (np.diff(line_m, axis=0) for line_m in self.lines_m)
+        return float(sum(np.linalg.norm(step, axis=1).sum() for step in steps))
 
     @property
     def hands(self) -> Mapping[str, Hand]:
@@ -91,13 +113,14 @@ class Rod:
         return float(moving + lifted + bent)
 
     def connector_poses(self) -> Floats:
-        """Return `T_world_plug` of both plugs, shape (2, 4, 4).
+        """Return `T_world_plug` of both plugs of each cable in order, shape (2 K, 4, 4).
 
         The origin is the middle of the plug's body, x points out of the cable's end, z is as
         far up as x allows. The body covers the last `connector_length_m` of the chain.
         """
-        x, count = self._chain.positions, _plug_nodes(self.parameters)
-        return np.stack([_plug_pose(x[0], x[count]), _plug_pose(x[-1], x[-1 - count])])
+        count = plug_nodes(self.parameters)
+        ends = ((x, x[::-1]) for x in self.lines_m)
+        return np.stack([plug_pose(x[0], x[count]) for both in ends for x in both])
 
     def set_capsules(self, starts_m: Floats, ends_m: Floats, radii_m: Floats) -> None:
         """Say where the obstacles are at the end of the next advance.
@@ -116,7 +139,7 @@ class Rod:
         same = len(radii) == len(self._capsules.radii)
         start = self._capsules.end if same else axes
         if not same:
-            self._near = _neighbours(len(self._chain.positions), len(radii))
+            self._near = neighbours_of(len(self._chain.positions), len(radii))
         self._next_capsules = kernels.Obstacles(start, axes, radii)
 
     def move_hand(self, hand: str, T_world_tcp: Floats) -> None:
@@ -161,6 +184,7 @@ class Rod:
         self._known(hand).close(
             mode,
             self._chain.positions,
+            self._spans,
             np.array([finger_gap_m, finger_width_m, finger_depth_m]),
             self.parameters,
         )
@@ -180,7 +204,8 @@ class Rod:
         """Return the greatest tension of the cable beside a hand's grasps."""
         tension = 0.0
         for strand in self._known(hand).strands:
-            first, last = max(int(strand.arc) - 2, 0), int(strand.arc) + 3
+            first, last = max(int(strand.arc) - 2, strand.span[0]), int(strand.arc) + 3
+            last = min(last, strand.span[1])
             tension = max(tension, float(self._chain.tensions[first:last].max(initial=0.0)))
         return tension
 
@@ -189,7 +214,7 @@ class Rod:
         return sum((s.force_n for s in self._known(hand).strands), np.zeros(3))
 
     def state(self) -> RodState:
-        """Return a copy of all that decides how the cable goes on; no hand may hold it."""
+        """Return a copy of all that decides how the cables go on; no hand may hold one."""
         chain, near = self._chain, self._near
         pairs, obstacle_pairs = int(near.counts[0]), int(near.counts[1])
         hands = [self._hands[name].pose for name in sorted(self._hands)]
@@ -216,17 +241,17 @@ class Rod:
         )
 
     def take_state(self, state: RodState) -> None:
-        """Go on from the state of the same cable; hands of the same names stand open.
+        """Go on from the state of the same cables; hands of the same names stand open.
 
         Raises:
-            InputError: It is the state of another cable, or of other hands.
+            InputError: It is the state of other cables, or of other hands.
         """
         if len(state.hand_poses) != len(self._hands):
             raise InputError(
                 f"Rod: state; got {len(state.hand_poses)} hands; expected {len(self._hands)}"
             )
         fill_chain(self._chain, state)
-        self._near = _neighbours(len(state.positions), len(state.radii))
+        self._near = neighbours_of(len(state.positions), len(state.radii))
         fill_neighbours(self._near, state)
         self._capsules = kernels.Obstacles(state.capsules, state.capsules, state.radii)
         self._next_capsules = self._capsules
@@ -239,7 +264,7 @@ class Rod:
 
     @property
     def at_rest(self) -> bool:
-        """Whether the cable lies still, so that time costs nothing until something comes near."""
+        """Whether all cable lies still, so that time costs nothing until something comes near."""
         return self._at_rest
 
     def advance(self, duration_s: float) -> None:
@@ -261,7 +286,7 @@ class Rod:
 
     def _solve(self, strands: list[tuple[Hand, Strand]], duration_s: float) -> None:
         steps = max(1, round(duration_s / self.parameters.substep_s))
-        rings = _rings(strands, duration_s, self.parameters, len(self._chain.positions))
+        rings = rings_of(strands, duration_s, self.parameters, len(self._chain.positions))
         kernels.advance(
             self._chain,
             self._near,
@@ -299,118 +324,10 @@ def _read_only(array: Floats) -> Floats:
     return view
 
 
-def _plug_nodes(parameters: RodParameters) -> int:
-    return max(1, round(parameters.connector_length_m / parameters.node_spacing_m))
-
-
-def _chain(nodes_m: Floats, parameters: RodParameters) -> kernels.Chain:
-    lengths_m = np.linalg.norm(np.diff(nodes_m, axis=0), axis=1)
-    masses_kg = np.zeros(len(nodes_m))
-    masses_kg[:-1] += 0.5 * parameters.density_kg_m * lengths_m
-    masses_kg[1:] += 0.5 * parameters.density_kg_m * lengths_m
-    plug = min(_plug_nodes(parameters), len(nodes_m) // 2 - 1)
-    masses_kg[: plug + 1] += parameters.connector_mass_kg / (plug + 1)
-    masses_kg[-plug - 1 :] += parameters.connector_mass_kg / (plug + 1)
-    stiffness = np.full(len(nodes_m), parameters.bending_stiffness_n_m2)
-    stiffness /= parameters.node_spacing_m**3
-    stiffness[:plug] *= PLUG_STIFFNESS
-    stiffness[-plug:] *= PLUG_STIFFNESS
-    stiffness[[0, -1]] = 0.0
-    segments = len(nodes_m) - 1
-    return kernels.Chain(
-        positions=nodes_m,
-        previous=nodes_m.copy(),
-        velocities=np.zeros_like(nodes_m),
-        inverse_masses=1.0 / masses_kg,
-        rest_lengths=lengths_m,
-        bending_stiffness=stiffness,
-        factor=np.zeros_like(nodes_m),
-        moves=np.zeros_like(nodes_m),
-        tensions=np.zeros(segments),
-        peak=np.zeros(1),
-        directions=np.zeros((segments, 3)),
-        diagonal=np.zeros(segments),
-        coupling=np.zeros(segments),
-        impulses=np.zeros(segments),
-    )
-
-
-# A plug is this much stiffer than the cable.
-PLUG_STIFFNESS = 100.0
-
-
-def _neighbours(nodes: int, capsules: int) -> kernels.Neighbours:
-    room = PAIRS_PER_NODE * nodes
-    return kernels.Neighbours(
-        reference=np.zeros((nodes, 3)),
-        obstacle_reference=np.zeros((capsules, 6)),
-        order=np.arange(nodes - 1),
-        pairs=np.zeros((room, 2), dtype=np.int64),
-        normals=np.zeros((room, 3)),
-        old_normals=np.zeros((room, 3)),
-        places=np.zeros((nodes - 1, nodes - 1), dtype=np.int64),
-        obstacle_pairs=np.zeros((room, 2), dtype=np.int64),
-        counts=np.array([0, 0, 1]),
-    )
-
-
-def _constants(parameters: RodParameters) -> kernels.Constants:
-    return kernels.Constants(
-        radius=parameters.radius_m,
-        stretch_compliance=1.0 / parameters.axial_stiffness_n,
-        bending_damping=parameters.bending_damping_s,
-        air_damping=parameters.air_damping_1_s,
-        friction_table=parameters.friction_table,
-        friction_self=parameters.friction_self,
-        friction_obstacles=parameters.friction_obstacles,
-        overload_force=parameters.overload_force_n,
-        half_table_x=0.5 * parameters.table_size_m[0],
-        half_table_y=0.5 * parameters.table_size_m[1],
-        floor_height=parameters.floor_height_m,
-        gravity=parameters.gravity_m_s2,
-    )
-
-
-def _no_capsules() -> kernels.Obstacles:
-    return kernels.Obstacles(np.zeros((0, 6)), np.zeros((0, 6)), np.zeros(0))
-
-
-def _rings(
-    strands: list[tuple[Hand, Strand]], duration_s: float, parameters: RodParameters, nodes: int
-) -> kernels.Rings:
-    count = len(strands)
-    plug = _plug_nodes(parameters)
-    rings = kernels.Rings(
-        start=np.zeros((count, 3)),
-        end=np.zeros((count, 3)),
-        arc=np.array([strand.arc for _, strand in strands], dtype=np.float64),
-        arc_limits=np.zeros((count, 2)),
-        clearance=np.zeros(count),
-        grip_force=np.zeros(count),
-        friction=np.zeros(count),
-        force=np.zeros((count, 3)),
-        guided=np.zeros(count, dtype=np.int64),
-        guides=np.zeros((count, 6)),
-        pushes=np.zeros((count, 3)),
-        solved=np.full(count, -1),
-        responses=np.zeros((count, 2, nodes)),
-    )
-    for r, (hand, strand) in enumerate(strands):
-        rings.start[r], rings.end[r] = hand.strand_path(strand, duration_s)
-        rings.arc_limits[r] = strand.arc_limits(plug)
-        caging = strand.mode == "cage"
-        rings.clearance[r] = parameters.cage_clearance_m if caging else 0.0
-        rings.grip_force[r] = 0.0 if caging else parameters.pinch_force_n
-        rings.friction[r] = parameters.friction_cage
-    return rings
-
-
-def _plug_pose(end: Floats, inner: Floats) -> Floats:
-    out = (end - inner) / np.linalg.norm(end - inner)
-    up = np.array([0.0, 0.0, 1.0]) if abs(out[2]) < 0.99 else np.array([1.0, 0.0, 0.0])
-    side = np.cross(up, out)
-    side /= np.linalg.norm(side)
-    pose = np.eye(4)
-    pose[:3, 0], pose[:3, 1], pose[:3, 2] = out, side, np.cross(out, side)
-    pose[:3, 3] = 0.5 * (end + inner)
-    return pose
+def _checked(line_m: Floats) -> Floats:
+    line_m = np.array(line_m, dtype=np.float64)
+    if line_m.ndim != 2 or line_m.shape[1] != 3 or len(line_m) < 4:
+        raise InputError(f"Rod: nodes; got shape {line_m.shape}; expected (N, 3) with N >= 4")
+    if not np.isfinite(line_m).all():
+        raise InputError("Rod: nodes; got a number that is not finite; expected metres")
+    return line_m
