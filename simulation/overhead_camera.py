@@ -102,6 +102,12 @@ class OverheadCamera:
         )
 
     @property
+    def noisy(self) -> bool:
+        """Whether two frames of one scene differ."""
+        sensor = self._sensor
+        return max(sensor.read_noise, sensor.speckle, sensor.depth_noise_m) > 0.0
+
+    @property
     def noise_state(self) -> Mapping[str, Any]:
         """State of the generators behind all noise and lost frames to come."""
         return {**self._rng.bit_generator.state, "faults": self._faults_rng.bit_generator.state}

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from executive.core.world import StreamMessage
+from perception.camera import Camera
 from robots.interfaces import ArmsDriver
 from simulation.arms_driver import SimArmsDriver
 from simulation.cable.configuration_file import configuration_from_file
@@ -15,6 +16,7 @@ from simulation.cable.parameters import RodParameters
 from simulation.cable.tiers import tier_cable
 from simulation.cable.truth import CableTruth, cable_truth
 from simulation.clock import SimClock
+from simulation.freezing_camera import FreezingCamera
 from simulation.overhead_camera import OverheadCamera
 from simulation.snapshots import TableSnapshot
 from simulation.streams import Stream, joint_states_json, scene_json
@@ -40,6 +42,7 @@ class TableCell:
         driver: Controllers of both arms.
         commanded: The same as missions command them: with what goes wrong.
         camera: Looks straight down on the table.
+        seen: The same as missions see through it: with what goes wrong.
         scene: Where the robot stands, and what it must not touch; for the planner.
         devices: Clock, driver and camera, by name.
     """
@@ -78,11 +81,15 @@ class TableCell:
             np.random.default_rng(camera_seed),
             np.random.default_rng(faults_seed),
         )
+        freezes_after = found.camera.freezes_after
+        self.seen: Camera = (
+            self.camera if freezes_after is None else FreezingCamera(self.camera, freezes_after)
+        )
         self.clock = SimClock(self)
         self._turns = Turns()
         self.devices: Mapping[str, object] = {
             "clock": self.clock,
-            "camera": self.camera,
+            "camera": self.seen,
             "driver": self.commanded,
         }
         rates = settings.physics

@@ -57,11 +57,22 @@ class ArmsScenario(_Document):
     stop_rate: Annotated[float, Field(ge=0.0, le=1.0)] = 0.0
 
 
+class CameraScenario(_Document):
+    """What goes wrong with the camera.
+
+    Attributes:
+        freezes_after: Frames after which it hands out the last one for ever.
+    """
+
+    freezes_after: Annotated[int, Field(ge=1)] | None = None
+
+
 class TableScenario(_Document):
     """What a mission finds in the cell."""
 
     cable: CableScenario = CableScenario()
     arms: ArmsScenario = ArmsScenario()
+    camera: CameraScenario = CameraScenario()
 
 
 class CameraConfig(_Document):

@@ -102,11 +102,13 @@ def open_cell(document: CellDocument, scenario: Mapping[str, object], seed: int)
 
 def _open_table_cell(document: CellDocument, scenario: Mapping[str, object], seed: int) -> Cell:
     from executive.app.visions import selectable_vision
+    from perception.fresh_camera import FreshCamera
     from robots.dual_arm import PlannedDualArm
     from simulation.table_cell import TableCell
 
     world = TableCell(document.config, scenario, seed)
     services = {
+        "camera": FreshCamera(world.seen, world.clock, noisy=world.camera.noisy),
         "arms": PlannedDualArm(world.commanded, seed=seed, scene=world.scene),
         "vision": selectable_vision(
             partial(cable_vision, ROWS_OF_ARMS_AT_HOME), ROWS_OF_ARMS_AT_HOME
@@ -138,12 +140,15 @@ def _search_services(
 ) -> Mapping[str, object]:
     """Return what skills of a search use on top of a shelf cell's devices."""
     from executive.app.shelf_services import shelf_services
+    from perception.fresh_camera import FreshCamera
 
     told = world.oracle_detector if world.settings.detector == "oracle" else None
     return {
         **shelf_services(
             world.stock, world.tool.shape, world.search_camera, told, world.settings.affinity
         ),
+        # Noise may be switched off there, and then frames of one scene are the same.
+        "camera": FreshCamera(world.camera, world.clock, noisy=False),
         "rng": np.random.default_rng(seed),
         **workers(document.work),
     }

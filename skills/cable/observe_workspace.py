@@ -3,6 +3,7 @@
 from executive.core.outcome import failure, success
 from executive.core.skill import Port, Skill, SkillRun
 from perception.camera import Camera, CameraFrame
+from skills.looking import new_frame
 
 
 class ObserveWorkspace(Skill):
@@ -10,6 +11,7 @@ class ObserveWorkspace(Skill):
 
     SUCCESS: `frame` is fresh.
     FAILURE: `camera.dark` when the frame has no contrast at all (lens cap, lights off).
+    A camera that gives its last frame for more than ten ticks is broken: `DeviceError`.
     """
 
     OUT = {"frame": Port(CameraFrame, "what the camera sees now")}
@@ -23,7 +25,7 @@ class ObserveWorkspace(Skill):
     def run(self) -> SkillRun:
         """Capture one frame; the world may settle for one tick before."""
         yield
-        frame = self._camera.capture()
+        frame = yield from new_frame(self._camera)
         spread = int(frame.image.max()) - int(frame.image.min())
         if spread < 16:
             return failure("camera.dark", "the frame has no contrast", grey_spread=spread)

@@ -8,6 +8,7 @@ from executive.core.outcome import failure, success
 from executive.core.skill import In, Port, SkillRun
 from perception.rgbd import RgbdCamera, RgbdFrame
 from robots.shelf_tool import LookFrom, ShelfTool
+from skills.looking import new_frame
 from skills.shelf.tool_skill import MOTION_REASONS, ToolSkill, failed
 
 # Less of the image with depth than this: something is before the camera, or it is broken.
@@ -42,7 +43,7 @@ class LookAtShelf(ToolSkill):
         result = yield from self._do(LookFrom(viewpoint))
         if result.failure is not None:
             return failed(result, viewpoint)
-        frame = self._camera.capture()
+        frame = yield from new_frame(self._camera)
         share = float((~np.isnan(frame.depth_m)).mean())
         if share < LEAST_DEPTH:
             return failure("camera.blind", "hardly any pixel has depth", depth_share=share)

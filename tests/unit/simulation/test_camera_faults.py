@@ -5,6 +5,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from executive.core.errors import DeviceError
+from simulation.freezing_camera import FreezingCamera
 from simulation.overhead_camera import OverheadCamera, miscalibrated, overhead_camera_model
 from simulation.table_cell import TableCell
 from simulation.table_cell_config import CameraConfig
@@ -82,3 +83,10 @@ def test_the_cell_passes_its_settings_on():
         assert not np.allclose(cell.camera.model.T_world_camera, TRUE.T_world_camera)
     finally:
         cell.close()
+
+
+def test_a_camera_that_freezes_gives_its_last_frame_for_ever(world):
+    frozen = FreezingCamera(camera(world), 2)
+    frames = [frozen.capture() for _ in range(4)]
+    assert frames[0] is not frames[1]
+    assert frames[1] is frames[2] is frames[3]

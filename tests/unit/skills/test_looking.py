@@ -5,6 +5,7 @@ from cell_fakes import finished, frame, overhand
 from executive.core.work import InlineWorker
 from perception.cable.orientation import reversed_crossings, reversed_trace
 from perception.cable.types import Knot, Trace, TraceEnd
+from perception.fresh_camera import FrozenError
 from skills.cable.account_for_cable import AccountForCable, with_connectors
 from skills.cable.detect_endpoints import DetectEndpoints
 from skills.cable.observe_workspace import ObserveWorkspace
@@ -82,3 +83,26 @@ def test_connectors_belong_to_a_trace_that_has_come_to_an_end_and_to_no_other():
     assert np.allclose(whole.points_px[[0, -1]], [(60.0, 200.0), (340.0, 200.0)])
     lost = Trace(line, TraceEnd.LOST, 0.9)
     assert with_connectors(lost) is lost
+
+
+class StutteringCamera:
+    """Gives its last frame a number of times before there is a new one."""
+
+    def __init__(self, times):
+        self.left = times
+
+    def capture(self):
+        self.left -= 1
+        if self.left >= 0:
+            raise FrozenError("camera: has frozen")
+        lit = frame()
+        lit.image[0, 0] = 200
+        return lit
+
+
+def test_a_camera_that_stutters_is_waited_for_and_one_that_has_frozen_is_broken():
+    outcome, ticks = finished(ObserveWorkspace(StutteringCamera(3)), {})
+    assert outcome.status == "SUCCESS"
+    assert ticks == 5
+    with pytest.raises(FrozenError, match="has frozen"):
+        finished(ObserveWorkspace(StutteringCamera(1000)), {})
