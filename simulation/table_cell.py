@@ -188,7 +188,7 @@ class TableCell:
 
 def _lay_cable(cable: CableScenario, rng: np.random.Generator, parameters: RodParameters) -> Floats:
     if cable.file:
-        return configuration_from_file(Path(cable.file))
+        return configuration_from_file(Path(cable.file), parameters)
     if cable.tier is not None:
         return tier_cable(
             cable.tier, rng, leaves_view=cable.leaves_view, parameters=parameters
