@@ -27,8 +27,8 @@ class _AboveRows:
         return self.tracer.trace(image[: len(image) - self.hidden_rows], start_px, endpoints)
 
 
-# Builds our own perception, with networks or without.
-Own = Callable[[Literal["learned", "classic"]], CableVision]
+# Builds our own perception, with networks or without; for None with them where they can run.
+Own = Callable[[Literal["learned", "classic"] | None], CableVision]
 
 
 def selectable_vision(own: Own, hidden_rows: int) -> SelectableVision:
@@ -39,6 +39,7 @@ def selectable_vision(own: Own, hidden_rows: int) -> SelectableVision:
         hidden_rows: Lowest image rows that show the robot instead of the table.
     """
     known: dict[str, Callable[[], CableVision]] = {
+        "best": partial(own, None),
         "classic": partial(own, "classic"),
         "learned": partial(own, "learned"),
         "tusk": partial(_tusk, own, hidden_rows, learned=True, cancel=True),

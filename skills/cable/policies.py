@@ -12,7 +12,7 @@ PolicyName = Literal[
     "default", "tusk", "sgtm2", "no_cancellation", "analytic", "no_interactive", "no_planning"
 ]
 POLICY_NAMES: tuple[PolicyName, ...] = get_args(PolicyName)
-VisionName = Literal["classic", "learned"]
+VisionName = Literal["best", "classic", "learned"]
 ClaimBy = Literal["belief", "rule"]
 HoldAt = Literal["searched", "given"]
 

@@ -134,7 +134,7 @@ def flown(*looks, arms=None, camera=None, **inputs):
     mission = load_mission(str(MISSION), skills=skills(), types=port_types())
     script, cell = ScriptedVision(*looks), Cell()
     names = {policy.vision for policy in POLICIES.values() if policy.vision} | {
-        *("classic", "learned")
+        *("best", "classic", "learned")
     }
     vision = SelectableVision({name: lambda: script for name in names}, "classic")
     devices = {
@@ -156,7 +156,7 @@ def test_every_policy_undoes_a_knot_and_says_so(policy):
     assert result.outcome is MissionOutcome.SUCCESS
     assert acts == ["dilate_knot"]
     assert result.claim.untangled
-    assert vision.selected == (POLICIES[policy].vision or "classic")
+    assert vision.selected == (POLICIES[policy].vision or "best")
 
 
 def test_only_a_belief_needs_the_whole_cable_accounted_for():
