@@ -218,8 +218,8 @@ def run(quick: bool, seed: int) -> Sequence[Row]:
     spoiled_cases = bench.cases - bench.valid
     return [
         _count("cases", bench.cases, bench.cases, ">= 100000"),
-        _count("tracebacks", len(bench.tracebacks), bench.cases, "0"),
-        _count("broken_valid_trees", len(bench.broken), bench.valid, "0"),
+        _count("tracebacks", len(bench.tracebacks), bench.cases, "= 0"),
+        _count("broken_valid_trees", len(bench.broken), bench.valid, "= 0"),
         _count("valid_trees", bench.valid, bench.cases),
         _count("refused", bench.refused, spoiled_cases),
         Row("fuzz_s", took_s, "s", bench.cases, took_s, took_s),
