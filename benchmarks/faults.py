@@ -230,7 +230,7 @@ def _damaged_tree(folder: Path, rng: np.random.Generator) -> bool:
 
 
 def _damaged_weights(folder: Path, rng: np.random.Generator) -> bool:
-    """Cut off the file of a network's weights."""
+    """Cut off the file of a network's weights, or flip a bit of it."""
     import shutil
 
     from perception.models import store
@@ -239,7 +239,12 @@ def _damaged_weights(folder: Path, rng: np.random.Generator) -> bool:
     shutil.copytree(source.parent, folder / "model")
     weights = folder / "model" / source.name
     data = weights.read_bytes()
-    weights.write_bytes(data[: int(rng.integers(len(data)))])
+    if rng.uniform() < 0.5:
+        damaged = bytearray(data)
+        damaged[int(rng.integers(len(data)))] ^= 1 << int(rng.integers(8))
+        weights.write_bytes(damaged)
+    else:
+        weights.write_bytes(data[: int(rng.integers(len(data)))])
     try:
         store.load_network(folder / "model")
     except InputError as error:

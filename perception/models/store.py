@@ -12,6 +12,7 @@ from torch.nn.utils.fusion import fuse_conv_bn_eval
 
 from executive.core.errors import InputError
 from executive.core.json_files import read_json
+from perception.models.checksums import check_checksum
 from perception.models.crossing_ribbon_net import CrossingRibbonNet
 from perception.models.sight_net import SightNet
 from perception.models.spatial_net import SpatialNet
@@ -61,7 +62,8 @@ def load_network(folder: Path) -> nn.Module:
     """Return a trained network, ready to run, its normalisations folded into convolutions.
 
     Raises:
-        InputError: The config names a network that does not exist, or its weights are damaged.
+        InputError: The config names a network that does not exist, or its weights are damaged
+            or not those that were trained.
     """
     config = read_config(folder)
     if config.network not in NETWORKS:
@@ -72,6 +74,7 @@ def load_network(folder: Path) -> nn.Module:
         )
     network = NETWORKS[config.network](config.widths, config.zoom)
     weights = folder / "weights.safetensors"
+    check_checksum(weights)
     try:
         network.load_state_dict(load_file(weights))
     except (OSError, RuntimeError, SafetensorError) as error:

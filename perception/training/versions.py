@@ -10,6 +10,7 @@ from torch import Tensor
 
 from executive.core.errors import InputError
 from executive.core.registry import closest
+from perception.models.checksums import write_checksum
 from perception.models.store import FOLDER, ModelConfig
 from perception.training.cards import write_card
 from perception.training.loop import Task, Trainer
@@ -105,6 +106,7 @@ def _keep(
 ) -> None:
     """Write what the last stage has learned, and what all of them took."""
     shutil.copy(_stage(folder, len(figures) - 1) / WEIGHTS, folder / WEIGHTS)
+    write_checksum(folder / WEIGHTS)
     config = ModelConfig(network=task.name, widths=task.widths, zoom=task.zoom)
     (folder / "config.json").write_text(config.model_dump_json(indent=2) + "\n")
     held_out = {name: value for name, value in figures[-1].items() if name not in WORK}

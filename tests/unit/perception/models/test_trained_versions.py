@@ -31,6 +31,7 @@ def test_a_version_answers_as_on_the_day_it_was_trained(folder):
 def test_a_version_is_complete_and_small(folder):
     assert {path.name for path in folder.iterdir()} >= {
         "weights.safetensors",
+        "weights.sha256",
         "config.json",
         "recipe.yaml",
         "metrics.json",
