@@ -7,11 +7,13 @@ import numpy as np
 from executive.core.outcome import Outcome, failure, success
 from executive.core.skill import SkillRun
 from robots.interfaces import Floats, MotionFailure, TcpGoal
-from skills.cable.grasping import CLEARANCE_M, LIFT_M, first_carry
+from skills.cable.grasping import CLEARANCE_M, LIFT_M, Carry, first_carry
 from skills.motion.arm_skill import MOTION_REASONS, ArmSkill
 
 # Where the other arm turns out to be in the way, these parts of it are tried in turn.
 SHARES_OF_WAY = (1.0, 0.6, 0.3)
+# Fingers that closed on nothing are tried elsewhere until so many have.
+MOST_MISSES = 2
 
 
 class CarrySkill(ArmSkill):
@@ -28,9 +30,19 @@ class CarrySkill(ArmSkill):
             goals: Where the cable may be taken, the best first.
             ways_m: Level ways to go from a goal, the best first.
         """
-        found = yield from self._worker.run(first_carry, self._arms, goals, ways_m)
-        if found is None:
-            return failure("grasp.unreachable", "no arm can take the cable and go on with it")
+        left = list(goals)
+        for _ in range(MOST_MISSES):
+            found = yield from self._worker.run(first_carry, self._arms, left, ways_m)
+            if found is None:
+                return failure("grasp.unreachable", "no arm can take the cable and go on with it")
+            outcome = yield from self._carry(found)
+            if outcome.reason is None or outcome.reason.code != "grasp.missed":
+                break
+            left = left[left.index(found.goal) + 1 :]
+        return outcome
+
+    def _carry(self, found: Carry) -> SkillRun:
+        """Go down, close, lift, go as far as it is free, lay down, rise."""
         arm = found.arm
         failed = yield from self._descend({arm: found.goal}, CLEARANCE_M, {arm: found.onward_m})
         if failed is not None:

@@ -13,6 +13,8 @@ from skills.cable.shifting import Hold, ShiftSkill
 SURE = 0.95
 # Where to hold: on the strand beside the doubtful place, as a share of the trace.
 REACH_ARC = 0.08
+# How far it is shifted at most, either way: strands of a bundle come along for a while.
+HALF_SQUARE_M = 0.08
 
 
 class PerturbDoubt(ShiftSkill):
@@ -37,7 +39,7 @@ class PerturbDoubt(ShiftSkill):
         sites = sites_between(trace, max(0.0, arc - REACH_ARC), min(1.0, arc + REACH_ARC))
         order = sorted(sites, key=lambda site: (-round(site.room_px / 10.0), abs(site.arc - arc)))
         holds = [Hold(site.point_px, site.direction, doubt_px[None]) for site in order]
-        return (yield from self.shift(frame, holds))
+        return (yield from self.shift(frame, holds, HALF_SQUARE_M))
 
 
 def _doubt(trace: Trace, crossings: Sequence[Crossing]) -> tuple[float, Points]:

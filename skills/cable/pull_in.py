@@ -11,6 +11,8 @@ from skills.cable.pulling import PullSkill
 
 # How far back from the end of the trace to look for a place to hold, as a share of it.
 REACH_ARC = 0.25
+# Nearer to the end of the trace the cable may hang over the edge of the table already.
+EDGE_ARC = 0.02
 
 
 class PullIn(PullSkill):
@@ -29,6 +31,6 @@ class PullIn(PullSkill):
         distance_m: Annotated[float, In("how far to pull", "m")] = 0.25,
     ) -> SkillRun:
         """Hold as near to the trace's end as an arm reaches, and pull."""
-        sites = sites_between(trace, 1.0 - REACH_ARC, 1.0)[::-1]
+        sites = sites_between(trace, 1.0 - REACH_ARC, 1.0 - EDGE_ARC)[::-1]
         goals = (grasp_goal(frame, site.point_px, site.direction) for site in sites)
         return (yield from self.pull(goals, distance_m))

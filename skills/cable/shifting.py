@@ -52,14 +52,23 @@ class ShiftSkill(CarrySkill):
         super().__init__(arms, worker)
         self._vision, self._rng = vision, rng
 
-    def shift(self, frame: CameraFrame, holds: Sequence[Hold]) -> SkillRun:
-        """Grasp at the first hold that an arm can carry, lift, shift, lay down, rise."""
+    def shift(
+        self, frame: CameraFrame, holds: Sequence[Hold], half_m: float = HALF_SQUARE_M
+    ) -> SkillRun:
+        """Grasp at the first hold that an arm can carry, lift, shift, lay down, rise.
+
+        Args:
+            frame: Overhead frame.
+            holds: Where the cable may be taken, the best first.
+            half_m: It is shifted by at most so much along either side of the table.
+        """
         cable = yield from self._worker.run(self._vision.cable_pixels, frame.image)
         goals = [grasp_goal(frame, hold.point_px, hold.direction) for hold in holds]
 
         def ways_m(goal: TcpGoal) -> list[Floats]:
             hold = holds[goals.index(goal)]
-            return roomiest_steps(frame, hold.leading_px, room_map(cable, hold), self._rng)
+            room = room_map(cable, hold)
+            return roomiest_steps(frame, hold.leading_px, room, self._rng, half_m)
 
         return (yield from self.carry(goals, ways_m))
 
@@ -92,11 +101,15 @@ def _moves_along(pixels: Points, hold: Hold) -> NDArray[np.bool_]:
 
 
 def roomiest_steps(
-    frame: CameraFrame, leading_px: Points, room_px: Room, rng: np.random.Generator
+    frame: CameraFrame,
+    leading_px: Points,
+    room_px: Room,
+    rng: np.random.Generator,
+    half_m: float = HALF_SQUARE_M,
 ) -> list[Floats]:
     """Return random level displacements [m], those first that leave all of `leading_px` room."""
     steps_m = np.zeros((DRAWS, 3))
-    steps_m[:, :2] = rng.uniform(-HALF_SQUARE_M, HALF_SQUARE_M, (DRAWS, 2))
+    steps_m[:, :2] = rng.uniform(-half_m, half_m, (DRAWS, 2))
     here_m = frame.camera.on_plane(leading_px)
     rooms_px = [
         min(room_px(place) for place in frame.camera.project(here_m + step_m)) for step_m in steps_m

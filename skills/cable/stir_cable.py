@@ -10,6 +10,8 @@ from skills.cable.shifting import Hold, ShiftSkill
 # Shorter pieces lie between crossings that are too close for two fingers.
 SHORTEST_PX = 60.0
 MOST_PIECES = 12
+# Strands that lie in a bundle are parted by more than an end needs to come free.
+HALF_SQUARE_M = 0.12
 
 
 class StirCable(ShiftSkill):
@@ -31,4 +33,4 @@ class StirCable(ShiftSkill):
             piece, middle = pieces[number], len(pieces[number]) // 2
             tangent = tangent_at(piece, middle, reach=4)
             holds.append(Hold(piece[middle], tangent, piece[middle][None]))
-        return (yield from self.shift(frame, holds))
+        return (yield from self.shift(frame, holds, HALF_SQUARE_M))

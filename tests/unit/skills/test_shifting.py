@@ -100,3 +100,37 @@ def test_a_knot_is_brought_to_the_middle_once():
     arms = ArrivingArms()
     outcome, _ = finished(BringKnot(arms, InlineWorker()), inputs | {"trace": aside})
     assert outcome.status == "SUCCESS"
+
+
+class MissesOnce(ArrivingArms):
+    """Arms whose fingers close on nothing the first time."""
+
+    closed = 0
+
+    def holds(self, arm):
+        self.closed += 1
+        return self.closed > 1
+
+
+def test_a_miss_is_followed_by_another_place_on_the_cable():
+    arms, (trace, _, _) = MissesOnce(), overhand()
+    outcome, _ = finished(PullIn(arms, InlineWorker()), {"frame": frame(), "trace": trace})
+    downs = [entry[1]["right"] for entry in arms.log if entry[0] == "move"]
+    assert outcome.status == "SUCCESS"
+    assert arms.closed == 2
+    assert downs[1] != downs[4]  # hover, down, up again, hover, down
+
+
+def test_an_arm_goes_down_only_where_it_can_go_on():
+    """Reaching the place is not enough: the whole way is asked for before a hand goes down."""
+
+    class ShortArms(ArrivingArms):
+        def reachable(self, arm, goal):
+            end_m = goal.position_m + sum(goal.onward_m)
+            return super().reachable(arm, goal) and abs(end_m[1]) < 0.06
+
+    arms, (trace, _, _) = ShortArms(), overhand()
+    outcome, _ = finished(PullIn(arms, InlineWorker()), {"frame": frame(), "trace": trace})
+    moves = [entry[1]["right"] for entry in arms.log if entry[0] == "move"]
+    assert outcome.status == "SUCCESS"
+    assert abs(moves[3][1]) < 0.06
