@@ -44,13 +44,13 @@ class FindStartPoints(Skill):
             if points_px is not None:
                 return success(start=TraceStart(points_px, endpoint))
         if endpoints and not clear:
-            return success(start=TraceStart(_ahead(endpoints[0]), endpoints[0]))
+            return success(start=start_at(endpoints[0]))
         return failure(
             "start.unclear", "no end has a clear piece of cable behind it", ends=len(endpoints)
         )
 
 
-def _ahead(endpoint: Endpoint) -> Points:
-    """Return an end and a point a little into the cable, shape (2, 2)."""
+def start_at(endpoint: Endpoint) -> TraceStart:
+    """Return an end and a point a little into the cable as the start of a trace."""
     steps_px: Points = np.array([[0.0], [AHEAD_PX]])
-    return endpoint.position_px + steps_px * endpoint.direction
+    return TraceStart(endpoint.position_px + steps_px * endpoint.direction, endpoint)

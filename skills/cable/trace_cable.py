@@ -5,15 +5,21 @@ from typing import Annotated
 from executive.core.outcome import failure, success
 from executive.core.skill import In, Port, Skill, SkillRun
 from executive.core.work import Worker
+from perception.cable.belief import COMPLETENESS
 from perception.cable.interfaces import CableVision
 from perception.cable.types import Endpoint, Trace, TraceStart
 from perception.camera import CameraFrame
+from skills.cable.find_start_points import start_at
+
+# A trace that tells as much as this about the whole cable needs no other one beside it.
+ENOUGH = 0.5
 
 
 class TraceCable(Skill):
     """Trace one cable through the frame.
 
-    SUCCESS: `trace` holds the path and why it ended (endpoint, edge, retrace, lost).
+    SUCCESS: `trace` holds the path and why it ended (endpoint, edge, retrace, lost); of several
+        the one that tells most about the whole cable.
     FAILURE: `trace.none` when there is no cable at the start.
     """
 
@@ -29,11 +35,23 @@ class TraceCable(Skill):
         frame: Annotated[CameraFrame, In("overhead frame")],
         start: Annotated[TraceStart, In("first points of the trace")],
         endpoints: Annotated[tuple[Endpoint, ...], In("ends where it may finish")],
+        other_ends: Annotated[bool, In("start at other ends where that tells more")] = False,
     ) -> SkillRun:
-        """Trace."""
-        trace = yield from self._worker.run(
-            self._vision.trace, frame.image, start.points_px, endpoints
-        )
-        if trace is None:
+        """Trace, one start a tick."""
+        others = [start_at(end) for end in endpoints if end is not start.endpoint]
+        best: Trace | None = None
+        for each in (start, *(others if other_ends else ())):
+            trace = yield from self._worker.run(
+                self._vision.trace, frame.image, each.points_px, endpoints
+            )
+            best = max((t for t in (best, trace) if t is not None), key=_telling, default=None)
+            if best is not None and _telling(best) >= ENOUGH:
+                break
+        if best is None:
             return failure("trace.none", "there is no cable at the start point")
-        return success(trace=trace)
+        return success(trace=best)
+
+
+def _telling(trace: Trace) -> float:
+    """Return how much a trace can tell about the whole cable, in [0, 1]."""
+    return trace.probability * COMPLETENESS[trace.end]

@@ -4,13 +4,15 @@ from cell_fakes import finished, frame, overhand
 
 from executive.core.work import InlineWorker
 from perception.cable.orientation import reversed_crossings, reversed_trace
-from perception.cable.types import Knot, Trace, TraceEnd
+from perception.cable.types import Endpoint, Knot, Trace, TraceEnd
 from perception.fresh_camera import FrozenError
 from skills.cable.account_for_cable import AccountForCable, with_connectors
 from skills.cable.detect_endpoints import DetectEndpoints
+from skills.cable.find_start_points import FindStartPoints, start_at
 from skills.cable.observe_workspace import ObserveWorkspace
 from skills.cable.orient_trace import OrientTrace
 from skills.cable.state_claim import StateClaim
+from skills.cable.trace_cable import TraceCable
 
 
 class KnotNearTheEnd:
@@ -106,3 +108,46 @@ def test_a_camera_that_stutters_is_waited_for_and_one_that_has_frozen_is_broken(
     assert ticks == 5
     with pytest.raises(FrozenError, match="has frozen"):
         finished(ObserveWorkspace(StutteringCamera(1000)), {})
+
+
+class LostFromTheLeft:
+    """Loses the cable on the way from the end at x = 0, and follows it from the other one."""
+
+    def __init__(self):
+        self.asked = 0
+
+    def trace(self, image, start_px, endpoints):
+        self.asked += 1
+        lost = start_px[0, 0] == 0.0
+        return Trace(start_px, TraceEnd.LOST if lost else TraceEnd.ENDPOINT, 0.9)
+
+
+def traced(vision, **more):
+    ends = tuple(Endpoint(np.array([x, 0.0]), np.array([1.0, 0.0]), 0.9) for x in (0.0, 500.0))
+    skill = TraceCable(vision, InlineWorker())
+    inputs = {"frame": frame(), "start": start_at(ends[0]), "endpoints": ends, **more}
+    return finished(skill, inputs)[0].outputs["trace"]
+
+
+def test_a_trace_that_is_lost_from_one_end_is_begun_at_the_other():
+    assert traced(LostFromTheLeft(), other_ends=True).end is TraceEnd.ENDPOINT
+
+
+def test_the_thesis_traces_from_one_end_only():
+    vision = LostFromTheLeft()
+    assert traced(vision).end is TraceEnd.LOST
+    assert vision.asked == 1
+
+
+def test_only_an_end_among_strands_is_no_clear_start():
+    class Crowded:
+        def start_points(self, image, endpoint):
+            return None
+
+    ends = (Endpoint(np.array([100.0, 50.0]), np.array([0.0, 1.0]), 0.9),)
+    skill = FindStartPoints(Crowded(), InlineWorker())
+    outcome, _ = finished(skill, {"frame": frame(), "endpoints": ends})
+    assert outcome.reason.code == "start.unclear"
+    outcome, _ = finished(skill, {"frame": frame(), "endpoints": ends, "clear": False})
+    ahead = np.diff(outcome.outputs["start"].points_px, axis=0)[0]
+    assert np.allclose(ahead / np.linalg.norm(ahead), ends[0].direction)
