@@ -1,4 +1,4 @@
-"""The overhead camera of the table cell: sees the arms and the cable, and nothing else."""
+"""The overhead camera of the table cell: sees the arms and the cables, and nothing else."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -131,8 +131,12 @@ class OverheadCamera:
         names, rod = world.body.link_names, world.rod
         poses = pose_matrices(*world.body.link_poses(names))
         links = dict(zip(names, poses, strict=True))
-        cable = cable_shapes(rod.positions_m, rod.parameters.radius_m, rod.connector_poses())
-        rendering = self._renderer.render(join([robot_shapes(world.robot, links), cable]))
+        plugs = rod.connector_poses().reshape(-1, 2, 4, 4)
+        cables = [
+            cable_shapes(line_m, rod.parameters.radius_m, ends)
+            for line_m, ends in zip(rod.lines_m, plugs, strict=True)
+        ]
+        rendering = self._renderer.render(join([robot_shapes(world.robot, links), *cables]))
         return CameraFrame(
             image=expose(rendering, self._sensor, self._rng),
             depth_m=measure_depth(rendering, self._sensor, self._rng),

@@ -7,9 +7,10 @@
 
 `/scene`, schema `Scene`:
     {"links": {name: [x, y, z, qx, qy, qz, qw]}, "cable_nodes_m": [[x, y, z], ...],
-     "cable_radius_m": float}
-    Poses of the robot's links in the world [m], quaternion last; the cable's centre line in
-    the world. Lengths are rounded to 0.1 mm, quaternions to 1e-4.
+     "cable_radius_m": float, "more_cables_m": [[[x, y, z], ...], ...]}
+    Poses of the robot's links in the world [m], quaternion last; the centre line of the only
+    cable, or of the first one, in the world; those of the others, left out without any. Lengths
+    are rounded to 0.1 mm, quaternions to 1e-4.
 
 A message is written when something has changed since the last of its kind.
 """
@@ -48,18 +49,20 @@ def scene_json(
     link_names: Sequence[str],
     positions_m: Floats,
     quats_xyzw: Floats,
-    nodes_m: Floats,
+    lines_m: Sequence[Floats],
     radius_m: float,
 ) -> bytes:
-    """Return a `Scene` message; poses shape (L, 3) and (L, 4), nodes shape (N, 3)."""
+    """Return a `Scene` message; poses shape (L, 3) and (L, 4), cables shape (N_k, 3) each."""
     poses = np.hstack([positions_m, quats_xyzw])
-    return _json(
-        {
-            "links": dict(zip(link_names, _rounded(poses, 4), strict=True)),
-            "cable_nodes_m": _rounded(nodes_m, 4),
-            "cable_radius_m": radius_m,
-        }
-    )
+    first_m, *others_m = lines_m
+    message: dict[str, object] = {
+        "links": dict(zip(link_names, _rounded(poses, 4), strict=True)),
+        "cable_nodes_m": _rounded(first_m, 4),
+        "cable_radius_m": radius_m,
+    }
+    if others_m:
+        message["more_cables_m"] = [_rounded(line_m, 4) for line_m in others_m]
+    return _json(message)
 
 
 @dataclass(slots=True)

@@ -1,37 +1,25 @@
-"""The simulated table cell: a YuMi, a table, an overhead camera and one cable."""
+"""The simulated table cell: a YuMi, a table, an overhead camera, and cables."""
 
 from collections.abc import Iterable, Mapping
-from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from executive.core.world import StreamMessage
 from perception.camera import Camera
 from robots.interfaces import ArmsDriver
 from simulation.arms_driver import SimArmsDriver
-from simulation.cable.configuration_file import configuration_from_file
-from simulation.cable.configurations import starting_configuration
-from simulation.cable.parameters import RodParameters
-from simulation.cable.tiers import tier_cable
 from simulation.cable.truth import CableTruth, cable_truth
 from simulation.clock import SimClock
 from simulation.freezing_camera import FreezingCamera
 from simulation.overhead_camera import OverheadCamera
 from simulation.snapshots import TableSnapshot
 from simulation.streams import Stream, joint_states_json, scene_json
-from simulation.table_cell_config import (
-    CableScenario,
-    TableCellConfig,
-    TableScenario,
-    read_settings,
-)
+from simulation.table_cables import lay_cables
+from simulation.table_cell_config import TableCellConfig, TableScenario, read_settings
 from simulation.table_setup import planning_scene, rod_parameters
 from simulation.table_world import TableWorld
 from simulation.turns import Turns
 from simulation.unreliable_arms import ArmFaults, UnreliableArms
-
-Floats = NDArray[np.float64]
 
 
 class TableCell:
@@ -55,20 +43,20 @@ class TableCell:
         Args:
             config: See `TableCellConfig`.
             scenario: See `TableScenario`.
-            seed: Of everything random: the cable, the cloth, the camera's noise.
+            seed: Of everything random: the cables, the cloth, the camera's noise.
 
         Raises:
-            InputError: A key or value is not known, or the cable's file cannot be used.
+            InputError: A key or value is not known, or a cable cannot be laid.
         """
         settings = read_settings(TableCellConfig, config, "cell config")
         found = read_settings(TableScenario, scenario, "scenario")
-        cable, faults = found.cable, ArmFaults(**found.arms.model_dump())
+        faults = ArmFaults(**found.arms.model_dump())
         cable_seed, camera_seed, faults_seed, arms_seed = np.random.SeedSequence(seed).spawn(4)
         parameters = rod_parameters(settings.cable)
-        nodes_m = _lay_cable(cable, np.random.default_rng(cable_seed), parameters)
+        lines_m = lay_cables(found, np.random.default_rng(cable_seed), parameters)
         self.scene = planning_scene(settings.layout)
         self._world = TableWorld(
-            nodes_m, settings.physics.step_hz, self.scene.placement, parameters
+            lines_m, settings.physics.step_hz, self.scene.placement, parameters
         )
         self.driver: SimArmsDriver = self._world.driver
         self.commanded: ArmsDriver = self.driver
@@ -163,8 +151,8 @@ class TableCell:
         self._record()
 
     def truth(self) -> CableTruth:
-        """Score the cable as it lies now."""
-        return cable_truth(self._world.rod.positions_m)
+        """Score the cables as they lie now."""
+        return cable_truth(*self._world.rod.lines_m)
 
     def _come_to_rest(self) -> None:
         while not self.driver.at_rest:
@@ -181,16 +169,4 @@ class TableCell:
         if self._scene.due(now_s):
             names, rod = world.body.link_names, world.rod
             poses = world.body.link_poses(names)
-            self._scene.add(
-                now_s, scene_json(names, *poses, rod.positions_m, rod.parameters.radius_m)
-            )
-
-
-def _lay_cable(cable: CableScenario, rng: np.random.Generator, parameters: RodParameters) -> Floats:
-    if cable.file:
-        return configuration_from_file(Path(cable.file), parameters)
-    if cable.tier is not None:
-        return tier_cable(
-            cable.tier, rng, leaves_view=cable.leaves_view, parameters=parameters
-        ).nodes_m
-    return starting_configuration(cable.knot, rng, parameters)
+            self._scene.add(now_s, scene_json(names, *poses, rod.lines_m, rod.parameters.radius_m))

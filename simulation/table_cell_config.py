@@ -1,14 +1,14 @@
 """What can be set about the table cell: light to import, checked before anything is built."""
 
 from collections.abc import Mapping
-from typing import Annotated, Literal, Self, TypeVar
+from typing import Annotated, Literal, Self, TypeGuard, TypeVar, get_args
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 from pydantic_core import ErrorDetails
 
 from executive.core.errors import InputError
 from executive.core.registry import closest
-from simulation.cable.knot_names import KnotName, TierName
+from simulation.cable.knot_names import KnotName, PairName, TierName
 
 Stiffness = Literal["soft", "usual", "stiff"]
 
@@ -43,6 +43,20 @@ class CableScenario(_Document):
         return self
 
 
+class OneCable(_Document):
+    """One of several cables: from a file, else laid at random.
+
+    Attributes:
+        knot: Which knot is tied into it.
+        length_m: How long it is.
+        file: JSON file `{"nodes_m": [[x, y, z], ...]}` whose centre line is laid instead.
+    """
+
+    knot: KnotName = "none"
+    length_m: Annotated[float, Field(ge=0.8, le=3.0)] = 1.5
+    file: str = ""
+
+
 class ArmsScenario(_Document):
     """What goes wrong with the arms; the seed decides when.
 
@@ -68,11 +82,34 @@ class CameraScenario(_Document):
 
 
 class TableScenario(_Document):
-    """What a mission finds in the cell."""
+    """What a mission finds in the cell.
+
+    Attributes:
+        cable: The only cable.
+        cables: Several cables instead, all laid at random or all from files.
+        tied: What ties the first two of them together; two plain cables if none are given.
+        arms: What goes wrong with the arms.
+        camera: What goes wrong with the camera.
+    """
 
     cable: CableScenario = CableScenario()
+    cables: Annotated[tuple[OneCable, ...], Field(max_length=4)] = ()
+    tied: PairName | None = None
     arms: ArmsScenario = ArmsScenario()
     camera: CameraScenario = CameraScenario()
+
+    @model_validator(mode="after")
+    def _fit_together(self) -> Self:
+        from_files = [bool(cable.file) for cable in self.cables]
+        if any(from_files) and not all(from_files):
+            raise ValueError("some cables come from files and some do not; try files for all")
+        if self.tied is None:
+            return self
+        if any(from_files) or any(cable.knot != "none" for cable in self.cables[:2]):
+            raise ValueError("tied is for two cables without knots or files; try leaving them out")
+        if len(self.cables) == 1:
+            raise ValueError("tied takes two cables, got 1; try leaving cables out")
+        return self
 
 
 class CameraConfig(_Document):
@@ -185,13 +222,18 @@ def _fault(model: type[BaseModel], detail: ErrorDetails) -> str:
         expected = detail["ctx"]["expected"]
         return f"{name}: got {detail['input']!r}; expected {expected}"
     if detail["type"] == "value_error":
-        return f"{name}: {detail['ctx']['error']}"
+        return f"{name}: {detail['ctx']['error']}" if path else str(detail["ctx"]["error"])
     return f"{name}: got {detail['input']!r}; {detail['msg']}"
+
+
+def _is_model(kind: object) -> TypeGuard[type[BaseModel]]:
+    return isinstance(kind, type) and issubclass(kind, BaseModel)
 
 
 def _fields(model: type[BaseModel], path: list[str]) -> list[str]:
     for part in path:
+        if part.isdigit():  # within a list, whose items have been looked up already
+            continue
         annotation = model.model_fields[part].annotation
-        assert isinstance(annotation, type)
-        model = annotation
+        model = next(kind for kind in (annotation, *get_args(annotation)) if _is_model(kind))
     return list(model.model_fields)

@@ -1,5 +1,6 @@
-"""Arms and cable in one time: each step moves the arms, then the cable that they push and hold."""
+"""Arms and cables in one time: each step moves the arms, then what they push and hold."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -25,14 +26,14 @@ _SETTLING_STEPS = 12
 
 @dataclass(frozen=True, slots=True, eq=False)
 class WorldState:
-    """Arms at rest and a free cable at one moment.
+    """Arms at rest and free cables at one moment.
 
     Attributes:
         steps: Steps taken since the world began.
         still_steps: For how many of them nothing has moved.
         joints: Position and velocity of each driven joint of the body, shape (18, 2).
         driver: The arms' controllers.
-        rod: The cable.
+        rod: The cables.
     """
 
     steps: int
@@ -46,7 +47,7 @@ class TableWorld:
     """The physics of the cell.
 
     Attributes:
-        rod: The cable.
+        rod: The cables.
         body: The arms.
         driver: Their controllers.
         robot: What the arms look like.
@@ -56,18 +57,18 @@ class TableWorld:
 
     def __init__(
         self,
-        nodes_m: Floats,
+        nodes_m: Floats | Sequence[Floats],
         step_hz: int,
         placement: Placement = YUMI_AT_TABLE,
         parameters: RodParameters | None = None,
     ) -> None:
-        """Put the robot, at home, before a table with a cable at rest along `nodes_m`.
+        """Put the robot, at home, before a table with cables at rest along `nodes_m`.
 
         Args:
-            nodes_m: Centre line of the cable, shape (N, 3).
+            nodes_m: Centre line of the cable, shape (N, 3), or of several cables.
             step_hz: Steps a second.
             placement: Where the robot stands.
-            parameters: What the cable is made of.
+            parameters: What the cables are made of.
         """
         self.step_s = 1.0 / step_hz
         self.rod = Rod(nodes_m, parameters)
@@ -97,7 +98,7 @@ class TableWorld:
         """Go on from a state of a world with the same cable, bit for bit.
 
         Raises:
-            InputError: It is that of another cable.
+            InputError: It is that of other cables.
         """
         self.rod.take_state(state.rod)
         self.body.place_joints(state.joints)

@@ -1,5 +1,7 @@
-"""Cable configurations that come from outside: a centre line in a JSON file."""
+"""Cable configurations that come from outside: centre lines in JSON files."""
 
+from collections.abc import Sequence
+from itertools import combinations
 from pathlib import Path
 
 import numpy as np
@@ -8,10 +10,10 @@ from pydantic import BaseModel, ConfigDict
 
 from executive.core.errors import InputError
 from executive.core.json_files import read_json
-from simulation.cable.configurations import settle
+from simulation.cable.configurations import Lines, settle_all
 from simulation.cable.knots import smooth
 from simulation.cable.parameters import RodParameters
-from simulation.cable.truth import centre_line_crossings
+from simulation.cable.truth import crossings_of
 
 Floats = NDArray[np.float64]
 
@@ -44,13 +46,38 @@ def configuration_from_file(path: Path, parameters: RodParameters | None = None)
     Raises:
         InputError: The file cannot be used; the message says which point and why.
     """
+    return configurations_from_files((path,), parameters)[0]
+
+
+def configurations_from_files(
+    paths: Sequence[Path], parameters: RodParameters | None = None
+) -> Lines:
+    """Read centre lines, lay a cable along each, and let them come to rest together.
+
+    Args:
+        paths: One file for each cable, as for `configuration_from_file`.
+        parameters: What the cables are made of.
+
+    Returns:
+        Node positions of each [m], world frame, evenly spaced, shape (N_k, 3).
+
+    Raises:
+        InputError: A file cannot be used, or two cables run through each other.
+    """
     parameters = parameters or RodParameters()
+    lines_m = [_line(path, parameters) for path in paths]
+    for (path, one_m), (other, other_m) in combinations(zip(paths, lines_m, strict=True), 2):
+        _check_apart(f"{path}: nodes_m: runs through that of {other}", (one_m, other_m), parameters)
+    return settle_all(lines_m, parameters)
+
+
+def _line(path: Path, parameters: RodParameters) -> Floats:
     points_m = _points(path)
     _check_points(path, points_m, parameters)
     nodes_m = smooth(points_m, parameters.node_spacing_m)
     nodes_m[:, 2] = np.maximum(nodes_m[:, 2], parameters.radius_m)
-    _check_line(path, nodes_m, parameters)
-    return settle(nodes_m, parameters)
+    _check_apart(f"{path}: nodes_m: runs through itself", (nodes_m,), parameters)
+    return nodes_m
 
 
 def _points(path: Path) -> Floats:
@@ -92,10 +119,11 @@ def _check_length(path: Path, points_m: Floats) -> None:
         )
 
 
-def _check_line(path: Path, nodes_m: Floats, parameters: RodParameters) -> None:
+def _check_apart(where: str, lines_m: Sequence[Floats], parameters: RodParameters) -> None:
+    nodes_m = np.vstack(lines_m)
     index = np.arange(len(nodes_m), dtype=float)
     limit_m = TOUCH_SHARE * 2.0 * parameters.radius_m
-    for crossing in centre_line_crossings(nodes_m):
+    for crossing in crossings_of(lines_m):
         first, second = (
             np.array([np.interp(arc, index, axis) for axis in nodes_m.T])
             for arc in (crossing.first, crossing.second)
@@ -103,7 +131,7 @@ def _check_line(path: Path, nodes_m: Floats, parameters: RodParameters) -> None:
         gap_m = abs(first[2] - second[2])
         if gap_m < limit_m:
             raise InputError(
-                f"{path}: nodes_m: runs through itself at ({first[0]:.3f}, {first[1]:.3f}); got "
+                f"{where} at ({first[0]:.3f}, {first[1]:.3f}); got "
                 f"strands {1e3 * gap_m:.1f} mm apart in height; expected at least "
                 f"{1e3 * limit_m:.1f} mm; try: raise the upper strand's z at crossings"
             )

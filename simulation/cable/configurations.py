@@ -19,9 +19,12 @@ from simulation.cable.truth import centre_line_crossings
 
 Floats = NDArray[np.float64]
 Polynomial = tuple[int, ...]
+Lines = tuple[Floats, ...]
 
 # How often a cable that has settled is let go again at most, and for how long.
 SETTLINGS, LET_GO_S = 8, 1.0
+# So long a cable is waited for.
+LONGEST_S = 6.0
 # How many plans are drawn before giving up: most get stuck, and cost a few hundredths of a second.
 PLANS = 500
 # Nodes beside a knot that belong to it once it has settled.
@@ -59,7 +62,7 @@ def starting_configuration(
         plan = draw_plan(names, rng, parameters, rules, fake)
         if plan is not None and is_tied(*plan, names, fake):
             dropped_m = plan[0] + (0.0, 0.0, rules.drop_m)
-            nodes_m = _at_rest(settle(dropped_m, parameters), parameters, rules)
+            (nodes_m,) = rest((settle(dropped_m, parameters),), parameters, rules)
             if is_tied(nodes_m, plan[1], names, fake) and _follows(nodes_m, names, rules):
                 return nodes_m
     raise InputError(
@@ -76,27 +79,38 @@ def _checked(names: tuple[KnotName, ...]) -> tuple[KnotName, ...]:
     return names
 
 
-def settle(nodes_m: Floats, parameters: RodParameters, longest_s: float = 6.0) -> Floats:
+def settle(nodes_m: Floats, parameters: RodParameters, longest_s: float = LONGEST_S) -> Floats:
     """Let a cable come to rest on the table and return where it lies, shape (N, 3)."""
-    rod = Rod(nodes_m, parameters)
+    return settle_all((nodes_m,), parameters, longest_s)[0]
+
+
+def settle_all(
+    lines_m: Sequence[Floats], parameters: RodParameters, longest_s: float = LONGEST_S
+) -> Lines:
+    """Let cables come to rest together and return where each lies, shape (N_k, 3)."""
+    rod = Rod(lines_m, parameters)
     while rod.time_s < longest_s:
         rod.advance(0.25)
         if rod.at_rest:
             break
-    return rod.positions_m.copy()
+    return _copied(rod)
 
 
-def _at_rest(nodes_m: Floats, parameters: RodParameters, rules: ConfigurationRules) -> Floats:
-    """Return where a cable lies that has settled, and stays once it is let go again."""
+def rest(lines_m: Lines, parameters: RodParameters, rules: ConfigurationRules) -> Lines:
+    """Return where cables lie that have settled, and stay once they are let go again."""
     for _ in range(SETTLINGS):
         if not np.isfinite(rules.still_m):
             break
-        rod = Rod(nodes_m, parameters)
+        rod = Rod(lines_m, parameters)
         rod.advance(LET_GO_S)
-        if float(np.abs(rod.positions_m - nodes_m).max()) < rules.still_m:
+        if float(np.abs(rod.positions_m - np.vstack(lines_m)).max()) < rules.still_m:
             break
-        nodes_m = rod.positions_m.copy()
-    return nodes_m
+        lines_m = _copied(rod)
+    return lines_m
+
+
+def _copied(rod: Rod) -> Lines:
+    return tuple(line_m.copy() for line_m in rod.lines_m)
 
 
 def is_tied(nodes_m: Floats, spans: Spans, knots: Sequence[KnotName], fake: bool = False) -> bool:
@@ -114,15 +128,16 @@ def is_tied(nodes_m: Floats, spans: Spans, knots: Sequence[KnotName], fake: bool
     if fake or not any(knot in TEMPLATES for knot in knots):
         return classify_curve(nodes_m).state is Knottedness.UNKNOT
     wanted = [_polynomial(knot) for knot in knots]
-    if _polynomial_of(nodes_m) != reduce(_product, wanted):
+    if polynomial_of(nodes_m) != reduce(product, wanted):
         return False
     parts = (nodes_m[max(0, first - BESIDE) : last + 1 + BESIDE] for first, last in spans)
     return len(knots) == 1 or all(
-        _polynomial_of(part) == own for part, own in zip(parts, wanted, strict=True)
+        polynomial_of(part) == own for part, own in zip(parts, wanted, strict=True)
     )
 
 
-def _polynomial_of(nodes_m: Floats) -> Polynomial:
+def polynomial_of(nodes_m: Floats) -> Polynomial:
+    """Return the Alexander polynomial of a cable whose ends are joined over everything."""
     return alexander_polynomial(simplify(close_over(curve_crossings(nodes_m))))
 
 
@@ -131,8 +146,8 @@ def _polynomial(knot: KnotName) -> Polynomial:
     return alexander_polynomial(TEMPLATES[knot].diagram()) if knot in TEMPLATES else (1,)
 
 
-def _product(one: Polynomial, other: Polynomial) -> Polynomial:
-    """Return the product up to a sign, the first coefficient positive."""
+def product(one: Polynomial, other: Polynomial) -> Polynomial:
+    """Return the product of two polynomials up to a sign, the first coefficient positive."""
     product = np.convolve(one, other)
     return tuple(int(coefficient) for coefficient in product * np.sign(product[0]))
 
@@ -149,11 +164,17 @@ def _follows(nodes_m: Floats, knots: Sequence[KnotName], rules: ConfigurationRul
     )
 
 
-def ends_in_sight(nodes_m: Floats, clearance_m: float = 0.02, within_m: float = 0.04) -> bool:
-    """Return whether no other strand lies near the last stretch at either end."""
+def ends_in_sight(
+    nodes_m: Floats,
+    clearance_m: float = 0.02,
+    within_m: float = 0.04,
+    others_m: Sequence[Floats] = (),
+) -> bool:
+    """Return whether no other strand, of it or of others, lies near the last stretch at an end."""
     arcs_m = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(nodes_m, axis=0), axis=1))])
     for arcs, points in ((arcs_m, nodes_m), (arcs_m[-1] - arcs_m, nodes_m)):
         tip, rest = points[arcs <= within_m, :2], points[arcs > within_m + 2.0 * clearance_m, :2]
-        if np.linalg.norm(tip[:, None] - rest[None], axis=2).min() < clearance_m:
+        around = np.vstack([rest, *(other[:, :2] for other in others_m)])
+        if np.linalg.norm(tip[:, None] - around[None], axis=2).min() < clearance_m:
             return False
     return True

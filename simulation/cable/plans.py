@@ -45,8 +45,8 @@ def draw_plan(
     Returns:
         Node positions [m], shape (N, 3), and where in them each knot is.
     """
-    layout = LayoutRules(_shrunk(rules.area, SPRING_BACK_M), parameters.node_spacing_m)
-    core = _place_core(knots[0], rng, layout, rules)
+    layout = LayoutRules(shrunk(rules.area, SPRING_BACK_M), parameters.node_spacing_m)
+    core = place_core(knots[0], rng, layout, rules)
     for knot in knots[1:]:
         core = None if core is None else _tie_another(core, knot, rng, layout, rules)
     if core is None:
@@ -96,7 +96,7 @@ def _grow_ends(
 
 def _areas_of_ends(rng: np.random.Generator, rules: ConfigurationRules) -> tuple[Area, Area]:
     """Return where either end may lie: as a rule the same area, for one that leaves a larger."""
-    area = _shrunk(rules.tails or rules.area, SPRING_BACK_M)
+    area = shrunk(rules.tails or rules.area, SPRING_BACK_M)
     if rules.view is None:
         return area, area
     low, high = rules.view.low_m, rules.view.high_m
@@ -126,7 +126,8 @@ def _within(layout: LayoutRules, area: Area) -> LayoutRules:
     return LayoutRules(area, layout.spacing_m)
 
 
-def _shrunk(area: Area, margin_m: float) -> Area:
+def shrunk(area: Area, margin_m: float) -> Area:
+    """Return an area less a margin on all sides."""
     return Area(
         (area.low_m[0] + margin_m, area.low_m[1] + margin_m),
         (area.high_m[0] - margin_m, area.high_m[1] - margin_m),
@@ -145,14 +146,14 @@ def _core(
     return np.column_stack([np.arange(8) * layout.spacing_m, np.zeros(8)])
 
 
-def _place_core(
+def place_core(
     knot: KnotName, rng: np.random.Generator, layout: LayoutRules, rules: ConfigurationRules
 ) -> tuple[Floats, Spans] | None:
     """Return the knot, or a straight piece, somewhere in the area, shape (N, 2)."""
     curve = _core(knot, rng, layout, rules)
     angle = rng.uniform(-np.pi, np.pi)
     mirror = np.array([1.0, rng.choice([-1.0, 1.0])])
-    curve = _turned(curve * mirror, angle)
+    curve = turned(curve * mirror, angle)
     low, high = np.array(layout.area.low_m), np.array(layout.area.high_m)
     room_low, room_high = low - curve.min(axis=0), high - curve.max(axis=0)
     if (room_low > room_high).any():
@@ -174,7 +175,7 @@ def _tie_another(
         return None
     curve = _core(knot, rng, layout, rules) * np.array([1.0, rng.choice([-1.0, 1.0])])
     ways = np.arctan2(*np.array([grown[-1] - grown[-2], curve[1] - curve[0]]).T[::-1])
-    curve = _turned(curve, float(ways[0] - ways[1]))
+    curve = turned(curve, float(ways[0] - ways[1]))
     curve = curve[1:] + (grown[-1] - curve[0])
     if not (layout.area.contains(curve) and fits_on(curve, grown, layout)):
         return None
@@ -182,7 +183,8 @@ def _tie_another(
     return longer, (*spans, (len(grown), len(longer) - 1))
 
 
-def _turned(points: Floats, angle_rad: float) -> Floats:
+def turned(points: Floats, angle_rad: float) -> Floats:
+    """Return points of the plane turned about the origin, shape (N, 2)."""
     turn = np.array(
         [[np.cos(angle_rad), -np.sin(angle_rad)], [np.sin(angle_rad), np.cos(angle_rad)]]
     )

@@ -12,20 +12,18 @@ chords meet nothing.
 """
 
 from dataclasses import dataclass
-from typing import Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
 from perception.cable.topology import StrandCrossing
 from perception.cable.topology.curve import self_intersections
+from simulation.cable.knot_names import PairName
 from simulation.cable.knots.gauss import gauss_code
 from simulation.cable.knots.splines import smooth
 from simulation.cable.knots.template import POINTS, WIDTHS_APART, Corners, told
 
 Floats = NDArray[np.float64]
-PairName = Literal["square", "carrick_bend", "sheet_bend"]
-PAIR_NAMES: tuple[PairName, ...] = get_args(PairName)
 
 
 @dataclass(frozen=True, slots=True)

@@ -33,7 +33,7 @@ def scene(time_s: float) -> StreamMessage:
     """Return a scene in which the cable rises and one link moves."""
     lift_m = np.array([0.0, 0.0, time_s])
     quat_xyzw = np.array([[0.0, 0.0, 0.0, 1.0]])
-    data = scene_json(["left_link_1"], lift_m[None], quat_xyzw, NODES_M + lift_m, 0.0035)
+    data = scene_json(["left_link_1"], lift_m[None], quat_xyzw, [NODES_M + lift_m], 0.0035)
     return StreamMessage("/scene", "Scene", time_s, data)
 
 

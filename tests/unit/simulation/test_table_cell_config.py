@@ -20,7 +20,28 @@ def test_a_scenario_names_the_knot_or_the_file():
 @pytest.mark.parametrize(
     ("values", "message"),
     [
-        ({"cabel": {}}, "scenario: cabel: unknown key; did you mean 'cable'? (known: arms, cable)"),
+        (
+            {"cabel": {}},
+            "scenario: cabel: unknown key; did you mean 'cable'? "
+            "(known: arms, cable, cables, camera, tied)",
+        ),
+        (
+            {"cables": [{}, {"knots": "none"}]},
+            "scenario: cables.1.knots: unknown key; did you mean 'knot'? "
+            "(known: file, knot, length_m)",
+        ),
+        (
+            {"cables": [{"file": "a.json"}, {}]},
+            "scenario: some cables come from files and some do not; try files for all",
+        ),
+        (
+            {"tied": "square", "cables": [{"knot": "overhand"}, {}]},
+            "scenario: tied is for two cables without knots or files; try leaving them out",
+        ),
+        (
+            {"tied": "square", "cables": [{}]},
+            "scenario: tied takes two cables, got 1; try leaving cables out",
+        ),
         (
             {"cable": {"knots": "none"}},
             "scenario: cable.knots: unknown key; did you mean 'knot'? "
