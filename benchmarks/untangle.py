@@ -7,6 +7,7 @@ Failures of kinds 1 to 7 are those of the thesis (section 4.3), told from truth 
 
 import argparse
 import sys
+import time
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from pathlib import Path
@@ -15,7 +16,7 @@ from benchmarks.harness import Row, median, share
 from benchmarks.untangle_trial import KNOTS, Trial, Wanted, left_to_run, read_trials, tried
 from benchmarks.untangle_truth import Failure
 from simulation.cable.knot_names import KNOT_NAMES, TIER_NAMES
-from skills.cable.policies import POLICY_NAMES
+from skills.cable.policies import POLICY_NAMES, VISION_NAMES
 
 CABLES = (*TIER_NAMES, *KNOT_NAMES)
 RUNS = 30
@@ -33,42 +34,56 @@ def run(quick: bool, seed: int, words: Sequence[str] = ()) -> Sequence[Row]:
         for policy in options.policy
         for cable in options.tier
     ]
-    return rows(run_all(wanted, options.out, options.processes))
+    return rows(run_all(wanted, options.out, options.processes, MINUTE_S * options.minutes))
 
 
 def _options(words: Sequence[str], quick: bool) -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="python -m benchmarks untangle")
     parser.add_argument("--tier", nargs="+", choices=CABLES, default=list(TIER_NAMES))
     parser.add_argument("--policy", nargs="+", choices=POLICY_NAMES, default=["default"])
-    parser.add_argument("--vision", choices=("default", "learned", "classic"), default="default")
+    parser.add_argument("--vision", choices=("default", *VISION_NAMES), default="default")
     parser.add_argument("--runs", type=int, default=QUICK_RUNS if quick else RUNS)
     parser.add_argument("--processes", type=int, choices=(1, 2), default=1)
+    parser.add_argument(
+        "--minutes", type=float, default=float("inf"), help="start no further run after so many"
+    )
     parser.add_argument("--out", type=Path, default=KEPT, help="recordings and partial results")
     return parser.parse_args([*words])
 
 
-def run_all(wanted: Sequence[Wanted], folder: Path, processes: int) -> list[Trial]:
-    """Run what has not been run yet, and return all trials that are wanted.
+def run_all(
+    wanted: Sequence[Wanted], folder: Path, processes: int, longest_s: float = float("inf")
+) -> list[Trial]:
+    """Run what has not been run yet, and return all trials that are wanted and there.
 
     Args:
         wanted: What to run.
         folder: Where recordings, and results as they come, are kept.
         processes: How many missions run side by side.
+        longest_s: No further run is started after this time.
     """
+    ends_s = time.monotonic() + longest_s
     folder.mkdir(parents=True, exist_ok=True)
     file = folder / "trials.jsonl"
     done = read_trials(file)
     # What a kill has cut short goes.
     file.write_text("".join(f"{trial.model_dump_json()}\n" for trial in done), encoding="utf-8")
     with ThreadPoolExecutor(processes) as pool, file.open("a", encoding="utf-8") as kept:
-        futures = [pool.submit(tried, one, folder) for one in left_to_run(wanted, done)]
+        futures = [pool.submit(_in_time, one, folder, ends_s) for one in left_to_run(wanted, done)]
         for future in as_completed(futures):
             trial = future.result()
+            if trial is None:
+                continue
             done.append(trial)
             kept.write(trial.model_dump_json() + "\n")
             kept.flush()
             print(told(trial), file=sys.stderr, flush=True)
     return [trial for trial in done if trial.wanted in set(wanted)]
+
+
+def _in_time(wanted: Wanted, folder: Path, ends_s: float) -> Trial | None:
+    """Run a mission unless the time is over."""
+    return tried(wanted, folder) if time.monotonic() < ends_s else None
 
 
 def told(trial: Trial) -> str:
@@ -83,13 +98,15 @@ def told(trial: Trial) -> str:
 
 
 def rows(trials: Sequence[Trial]) -> list[Row]:
-    """Return the figures of each sort of cable and policy, then those of all runs."""
+    """Return the figures of each sort of cable and policy, then those of each policy's runs."""
     sorts = sorted({(t.wanted.policy, t.wanted.cable) for t in trials})
     found: list[Row] = []
     for policy, cable in sorts:
         mine = [t for t in trials if (t.wanted.policy, t.wanted.cable) == (policy, cable)]
         found += _of_sort(cable if policy == "default" else f"{cable}_{policy}", mine)
-    return [*found, *_of_all(trials)]
+    for policy in sorted({policy for policy, _ in sorts}):
+        found += _of_policy(policy, [t for t in trials if t.wanted.policy == policy])
+    return found
 
 
 def _of_sort(name: str, trials: Sequence[Trial]) -> list[Row]:
@@ -115,17 +132,28 @@ def _minutes(name: str, times_s: Sequence[float]) -> list[Row]:
     return [median(name, [s / MINUTE_S for s in times_s], "min")] if times_s else []
 
 
-def _of_all(trials: Sequence[Trial]) -> list[Row]:
+def _of_policy(policy: str, trials: Sequence[Trial]) -> list[Row]:
+    """Return what holds for all cables that were untangled in one way."""
     n, samples = len(trials), sum(t.samples for t in trials)
+    ours, name = policy == "default", "" if policy == "default" else f"{policy}_"
     rest_s = [t.wall_s - t.seeing_s - t.thinking_s - t.acting_s for t in trials]
     return [
-        share("false_claims", sum(t.claimed and not t.untangled for t in trials), n, "= 0"),
-        share("limits_broken", sum(t.broken for t in trials), samples, "= 0"),
-        share("bodies_touching", sum(t.touching for t in trials), samples, "= 0"),
-        median("wall_s", [t.wall_s for t in trials], "s"),
-        median("sim_to_wall", [t.sim_s / t.wall_s for t in trials], "1", ">= 3"),
-        median("seeing_s", [t.seeing_s for t in trials], "s"),
-        median("thinking_s", [t.thinking_s for t in trials], "s"),
-        median("acting_s", [t.acting_s for t in trials], "s"),
-        median("physics_and_opening_s", rest_s, "s"),
+        share(f"{name}verified", sum(t.verified for t in trials), n, ">= 0.95" if ours else ""),
+        share(
+            f"{name}false_claims",
+            sum(t.claimed and not t.untangled for t in trials),
+            n,
+            "= 0" if ours else "",
+        ),
+        share(f"{name}limits_broken", sum(t.broken for t in trials), samples, "= 0"),
+        share(f"{name}bodies_touching", sum(t.touching for t in trials), samples, "= 0"),
+        median(f"{name}actions", [t.actions for t in trials], "1"),
+        median(f"{name}wall_s", [t.wall_s for t in trials], "s"),
+        median(
+            f"{name}sim_to_wall", [t.sim_s / t.wall_s for t in trials], "1", ">= 3" if ours else ""
+        ),
+        median(f"{name}seeing_s", [t.seeing_s for t in trials], "s"),
+        median(f"{name}thinking_s", [t.thinking_s for t in trials], "s"),
+        median(f"{name}acting_s", [t.acting_s for t in trials], "s"),
+        median(f"{name}physics_and_opening_s", rest_s, "s"),
     ]

@@ -13,6 +13,7 @@ PolicyName = Literal[
 ]
 POLICY_NAMES: tuple[PolicyName, ...] = get_args(PolicyName)
 VisionName = Literal["best", "classic", "learned"]
+VISION_NAMES: tuple[VisionName, ...] = get_args(VisionName)
 ClaimBy = Literal["belief", "rule"]
 HoldAt = Literal["searched", "given"]
 

@@ -146,3 +146,22 @@ def test_rows_follow_the_table_of_the_thesis():
     assert found["C1_failure_7"].value == pytest.approx(1 / 3)
     assert found["false_claims"].value == 0.0
     assert found["physics_and_opening_s"].value == 40.0
+
+
+def test_no_run_is_started_when_the_time_is_over(tmp_path):
+    assert run_all([Wanted(cable="C1", seed=1)], tmp_path, 1, longest_s=0.0) == []
+
+
+def test_what_one_policy_claims_is_not_counted_for_another():
+    ours, other = trial(0), trial(1)
+    wrong = other.model_copy(
+        update={
+            "wanted": Wanted(cable="C1", seed=1, policy="tusk"),
+            "claimed": True,
+            "untangled": False,
+        }
+    )
+    found = {row.name: row for row in rows([ours, wrong])}
+    assert found["false_claims"].value == 0.0
+    assert found["tusk_false_claims"].value == 1.0
+    assert found["false_claims"].n == 1
