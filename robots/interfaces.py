@@ -65,6 +65,22 @@ Goal = TcpGoal | PoseGoal
 Cause = Literal["reach", "joint_limit", "collision", "onward", "search", "timing", "moving"]
 
 
+PathStrategy = Literal["straight_edge", "rrt_connect", "detour", "roadmap"]
+
+
+@dataclass(frozen=True, slots=True)
+class StrategyTried:
+    """A way of looking for a path that found none.
+
+    Attributes:
+        name: Which one.
+        ends: Configurations that it was to lead to.
+    """
+
+    name: PathStrategy
+    ends: int
+
+
 @dataclass(frozen=True, slots=True)
 class MotionFailure:
     """Why a motion cannot be planned.
@@ -79,6 +95,7 @@ class MotionFailure:
             overlap.
         joint: Name of the joint whose limit hinders, if that is the cause.
         tried: Descents, paths or ways along a line that were tried.
+        strategies: How a path was looked for, in order, if none was found.
         elapsed_ms: What the answer cost on this machine; not the same from run to run.
     """
 
@@ -90,6 +107,7 @@ class MotionFailure:
     distance_m: float | None = None
     joint: str | None = None
     tried: int = 0
+    strategies: tuple[StrategyTried, ...] = ()
     elapsed_ms: float | None = field(default=None, compare=False)
 
 

@@ -8,7 +8,7 @@ from typing import ParamSpec
 
 import numpy as np
 
-from robots.interfaces import Floats, MotionFailure, Trajectory
+from robots.interfaces import Floats, MotionFailure, StrategyTried, Trajectory
 from robots.motion.collision import CollisionModel
 from robots.motion.model import RobotModel
 from robots.motion.search import called
@@ -56,13 +56,23 @@ def beyond_limits(robot: RobotModel, positions_rad: Floats) -> MotionFailure:
     return MotionFailure("motion.unreachable", "path", text, cause="joint_limit", joint=name)
 
 
-def no_path(arms: Sequence[str], tried: int, checks: int) -> MotionFailure:
-    """Return that no path was found to any of the configurations that were tried."""
+def no_path(arms: Sequence[str], strategies: Sequence[StrategyTried], checks: int) -> MotionFailure:
+    """Return that no path was found to any of the configurations, and how it was looked for.
+
+    Args:
+        arms: Those that were to move.
+        strategies: What was tried.
+        checks: Collision checks that each search was given.
+    """
+    ends = max(strategy.ends for strategy in strategies)
+    told = ", ".join(f"{strategy.name} to {strategy.ends}" for strategy in strategies)
     text = (
-        f"{called(*arms)}: no path to any of {tried} configurations within {checks} collision "
-        "checks each"
+        f"{called(*arms)}: no path to any of {ends} configurations; tried {told}, each search "
+        f"within {checks} collision checks"
     )
-    return MotionFailure("motion.no_path", "path", text, cause="search", tried=tried)
+    return MotionFailure(
+        "motion.no_path", "path", text, cause="search", tried=ends, strategies=tuple(strategies)
+    )
 
 
 def cut_short(arm: str, displacement_m: Floats, done: int, steps: int) -> MotionFailure:

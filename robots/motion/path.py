@@ -1,20 +1,20 @@
-"""Collision-free paths between configurations: a straight edge, else RRT-Connect, then shortcuts.
+"""Collision-free paths between configurations: edges, RRT-Connect, and shortcuts.
 
 RRT-Connect is that of Kuffner and LaValle (ICRA 2000). Work is bounded by the number of
 collision checks, not by time, so that a seed decides the answer.
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from robots.interfaces import Floats
 
 # Largest sweep of the farthest part of an arm between two checks [m].
 RESOLUTION_M = 0.02
 _EXTENSION = 0.25  # of a tree, in the metric of the space
-_SHORTEN_TRIES = 60
 _SAMPLING_MARGIN_RAD = 3.0  # beyond the box around start and goal
 
 
@@ -37,6 +37,16 @@ class Space:
     def steps(self, a: Floats, b: Floats) -> int:
         """Return into how many steps an edge is cut so that nothing moves too far in one."""
         return 1 + int(self.levers_m @ np.abs(b - a) / RESOLUTION_M)
+
+    def part(self, base: Floats, moving: NDArray[np.int64]) -> "Space":
+        """Return the space of some of the joints, while the others stay as in `base`."""
+        whole = base.copy()
+
+        def collides(positions_rad: Floats) -> bool:
+            whole[moving] = positions_rad
+            return self.collides(whole)
+
+        return Space(self.lower[moving], self.upper[moving], self.levers_m[moving], collides)
 
     def edge_is_free(self, a: Floats, b: Floats) -> bool:
         """Return whether the straight edge is free; `a` itself is taken to be."""
@@ -74,33 +84,6 @@ def shorten(path: list[Floats], space: Space, rng: np.random.Generator, tries: i
         if space.edge_is_free(path[first], path[last]):
             del path[first + 1 : last]
     return path
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class PathSearch:
-    """Looks for paths to any of several ends.
-
-    Attributes:
-        space: Where the paths lie.
-        rng: Source of samples.
-        max_checks: Collision checks that each tree search may spend.
-        max_searches: Ends to which trees are grown.
-    """
-
-    space: Space
-    rng: np.random.Generator
-    max_checks: int
-    max_searches: int
-
-    def paths(self, start: Floats, ends: Sequence[Floats]) -> Iterator[list[Floats]]:
-        """Yield paths one by one, those that are cheap to find first."""
-        for end in ends:
-            if self.space.edge_is_free(start, end):
-                yield [start, end]
-        for end in ends[: self.max_searches]:
-            path = RrtConnect(self.space, self.rng, self.max_checks).path(start, end)
-            if path is not None:
-                yield shorten(path, self.space, self.rng, _SHORTEN_TRIES)
 
 
 class RrtConnect:

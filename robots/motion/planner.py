@@ -22,7 +22,8 @@ from robots.motion.line import ArmLine, in_step, line_steps, line_variants
 from robots.motion.line_timing import time_curve
 from robots.motion.model import RobotModel
 from robots.motion.own_pace import beside_each_other
-from robots.motion.path import PathSearch, Space
+from robots.motion.path import Space
+from robots.motion.path_search import PathSearch
 from robots.motion.solver import GoalSolver
 from robots.motion.timing import cut_corners, stop_at_waypoints
 from robots.motion.verify import find_fault
@@ -80,7 +81,7 @@ class MotionPlanner:
         self.solver = GoalSolver(robot, scene, rest_rad, seed)
         self.settings = settings or PlannerSettings()
         self.limits = robot.limits.slowed(self.settings.speed_scale)
-        self._seed = seed
+        self._seed, self._rest_rad = seed, rest_rad
         self.requests = 0
 
     def set_scene(self, scene: PlanningScene) -> None:
@@ -197,10 +198,18 @@ class MotionPlanner:
         rng = np.random.default_rng([self._seed, self.requests])
         self.requests += 1
         collision = checker or self.solver.together
-        moving = np.concatenate([np.r_[self.robot.joints_of(arm)] for arm in arms])
+        joints = [np.r_[self.robot.joints_of(arm)] for arm in arms]
+        moving = np.concatenate(joints)
         space = self._space(start, moving, collision)
         failure: MotionFailure | None = None
-        search = PathSearch(space, rng, self.settings.path_checks, self.settings.path_goals)
+        search = PathSearch(
+            space,
+            rng,
+            self.settings.path_checks,
+            self.settings.path_goals,
+            self._rest_rad[moving],
+            np.split(np.arange(len(moving)), np.cumsum([len(own) for own in joints])[:-1]),
+        )
         for path in search.paths(start[moving], [end[moving] for end in ends]):
             whole = np.tile(start, (len(path), 1))
             whole[:, moving] = path
@@ -210,8 +219,7 @@ class MotionPlanner:
             failure = answer
         if failure is not None:
             return failure
-        tried = min(len(ends), self.settings.path_goals)
-        return no_path(arms, tried, self.settings.path_checks)
+        return no_path(arms, search.tried, self.settings.path_checks)
 
     def _space(self, base: Floats, moving: Floats, collision: CollisionModel) -> Space:
         whole = base.copy()
