@@ -28,6 +28,7 @@ _SKILLS: Final = {
     "go_home": "skills.motion.go_home:GoHome",
     "look_at_shelf": "skills.shelf.look_at_shelf:LookAtShelf",
     "observe_workspace": "skills.cable.observe_workspace:ObserveWorkspace",
+    "open_knot": "skills.cable.open_knot:OpenKnot",
     "orient_trace": "skills.cable.orient_trace:OrientTrace",
     "perturb_doubt": "skills.cable.perturb_doubt:PerturbDoubt",
     "perturb_endpoint": "skills.cable.perturb_endpoint:PerturbEndpoint",

@@ -76,12 +76,13 @@ class DilateKnot(ArmSkill):
         travel_m: Annotated[float, In("how much farther apart the hands move", "m")] = 0.5,
         hold_at: Annotated[HoldAt, In("best places in reach, or the knot's")] = "searched",
         planned: Annotated[bool, In("go to where the cable should lie best instead")] = False,
+        behind: Annotated[bool, In("hold it behind the knot where there is no room in it")] = True,
     ) -> SkillRun:
         """Take hold with both hands, lift, pull apart, lay down, rise."""
         if not knots:
             return failure("knot.none", "no knot was found to dilate")
         if hold_at == "searched":
-            pairs = searched_pairs(trace, crossings, knots[0], frame)
+            pairs = searched_pairs(trace, crossings, knots[0], frame, behind)
         else:
             pairs = given_pairs(trace, knots[0], frame)
         found = yield from self._reach_down(frame, trace, pairs[:MOST_PAIRS], planned)
@@ -180,8 +181,9 @@ class DilateKnot(ArmSkill):
             failed = yield from self._move_by(way_m)
             if failed is None:
                 break
-        laid = yield from self._move_by(dict.fromkeys(hands, -up_m))
-        return failed or laid
+        # Where hands cannot lay it down at the end of their way, the cable falls these 3 cm.
+        yield from self._move_by(dict.fromkeys(hands, -up_m))
+        return failed
 
 
 def held_pull(frame: CameraFrame, trace: Trace, cage: GraspSite, pinch: GraspSite) -> Pull:

@@ -29,19 +29,29 @@ CABLE_LENGTH_M = 3.0
 DEEPEST_CAGE_M = 0.35
 # How far behind a knot a pinch may be where there is no room in it, and what that costs.
 BEHIND_M, BEHIND_COST = 0.4, 20.0
+# A pinch so little beyond where a knot closes is still at its last strand.
+IN_ARC = 0.02
 # Beyond the places that are given for a knot others are tried along so much of the trace.
 WALK_ARC = 0.15
 
 
 def searched_pairs(
-    trace: Trace, crossings: Sequence[Crossing], knot: Knot, frame: CameraFrame
+    trace: Trace,
+    crossings: Sequence[Crossing],
+    knot: Knot,
+    frame: CameraFrame,
+    behind: bool = True,
 ) -> list[Pair]:
-    """Return the pairs of all places around a knot, best first; deeper in it comes last."""
+    """Return the pairs of all places around a knot, best first; deeper in it comes last.
+
+    Behind the knot comes after that, or not at all: it draws the knot together.
+    """
     cages, pinches = cage_sites(trace, crossings, knot), pinch_sites(trace, crossings, knot)
-    return [
+    pairs = [
         *ranked_pairs(cages, pinches, knot, frame),
         *deeper_pairs(trace, crossings, knot, frame),
     ]
+    return [pair for pair in pairs if behind or pair[1].arc <= knot.interval[1] + IN_ARC]
 
 
 def deeper_pairs(

@@ -30,8 +30,11 @@ MIDDLES_X_M = (-0.2, -0.1, 0.0, 0.1, 0.2)
 MIDDLES_Y_M = (-0.14, -0.06, 0.02, 0.10, 0.16)
 # Arms that are to pass each other collide: hands keep so far apart along the table.
 ABREAST_M = 0.10
-# In crossings: a metre of tail that is left to draw, and a step of cable close beside another.
-TAIL_COST, BESIDE_COST = 20.0, 0.15
+# In crossings: a metre of tail that is left to draw, that any is left, and a step of cable close
+# beside another.
+TAIL_COST, LEFT_COST, BESIDE_COST = 20.0, 4.0, 0.15
+# A tail is out when so much more has been drawn: connectors, and cable that was not quite straight.
+MARGIN_M = 0.06
 BESIDE_M = 0.02
 
 
@@ -58,14 +61,20 @@ class Pull:
 
     def drawn_m(self, ends: Ends) -> float:
         """Return how much of the tail is drawn out, at most all of it."""
+        return min(max(0.0, self._taken_m(ends)), self.cage_m)
+
+    def left_m(self, ends: Ends) -> float:
+        """Return how much is still to be drawn until the tail is out for sure."""
+        return max(0.0, self.cage_m + MARGIN_M - max(0.0, self._taken_m(ends)))
+
+    def _taken_m(self, ends: Ends) -> float:
+        """Return how much farther apart the hands go than the cable between them reaches."""
         span_m = float(np.linalg.norm(ends[1] - ends[0]))
-        taken_m = self.pinch_m - self.cage_m
-        if not self.slides(ends):
-            hands_m = point_at(
-                self.line_m, arc_lengths(self.line_m), np.array([self.cage_m, self.pinch_m])
-            )
-            taken_m = float(np.linalg.norm(hands_m[1] - hands_m[0]))
-        return min(max(0.0, span_m - taken_m), self.cage_m)
+        if self.slides(ends):
+            return span_m - (self.pinch_m - self.cage_m)
+        arcs = arc_lengths(self.line_m)
+        hands_m = point_at(self.line_m, arcs, np.array([self.cage_m, self.pinch_m]))
+        return span_m - float(np.linalg.norm(hands_m[1] - hands_m[0]))
 
     def predicted(self, ends: Ends) -> Floats:
         """Return the line that is left when both hands have gone to these places."""
@@ -84,8 +93,9 @@ class Pull:
 
     def cost(self, ends: Ends) -> float:
         """Return how bad it is to leave the cable as it is predicted, in crossings."""
-        left_m = self.cage_m - self.drawn_m(ends)
-        return tangle_cost(self.predicted(ends)) + TAIL_COST * left_m
+        left_m = self.left_m(ends)
+        left = TAIL_COST * left_m + (LEFT_COST if left_m > 0.0 else 0.0)
+        return tangle_cost(self.predicted(ends)) + left
 
 
 def tangle_cost(line_m: Floats) -> float:

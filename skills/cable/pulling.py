@@ -11,6 +11,8 @@ from skills.cable.carrying import CarrySkill
 
 # Where the whole way is out of reach, these parts of it are tried in turn, each also askew.
 SHARES_OF_WAY = (1.0, 0.6, 0.3)
+# Of its way, a pull askew comes at least so much nearer to the middle.
+LEAST_IN = 0.3
 ASKEW_RAD = tuple(np.deg2rad((0.0, 35.0, -35.0, 70.0, -70.0)))
 
 
@@ -27,9 +29,11 @@ class PullSkill(CarrySkill):
 def ways_inwards(position_m: Floats, distance_m: float) -> Iterator[Floats]:
     """Yield level displacements towards the table's middle, the straightest and longest first."""
     for share, angle in product(SHARES_OF_WAY, ASKEW_RAD):
-        way_m = towards_middle(position_m, share * distance_m)
+        way_m = towards_middle(position_m, share * distance_m)[:2]
         turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
-        yield np.append(turn @ way_m[:2], 0.0)
+        end_m = position_m[:2] + turn @ way_m
+        if np.linalg.norm(end_m) <= np.linalg.norm(position_m[:2]) - LEAST_IN * share * distance_m:
+            yield np.append(end_m - position_m[:2], 0.0)
 
 
 def towards_middle(position_m: Floats, distance_m: float) -> Floats:
