@@ -11,6 +11,9 @@ from pathlib import Path
 from executive.core.errors import RecordingError
 from executive.engine.recording.reader import Recording
 
+REFUSED, BROKEN = 2, 3
+"""Exit codes: what was given cannot be used; something broke."""
+
 STUBS = """
 format: 1
 stubs: work_stubs
@@ -31,6 +34,7 @@ uses: [work_stubs]
 timeout_s: 100000.0
 in:
   parts: {type: int, default: 400}
+  note: {type: str, default: ""}
 root:
   repeat:
     times: $parts
@@ -45,7 +49,7 @@ CAMPAIGN = """
 campaign: works
 format: 1
 mission: work
-set: {parts: 30}
+set: {parts: 10}
 seeds: {count: 24}
 """
 
@@ -54,6 +58,12 @@ def write_work(folder: Path) -> None:
     """Write the mission, its stubs, and a campaign of it."""
     for name, text in (("work_stubs", STUBS), ("work", MISSION), ("works", CAMPAIGN)):
         (folder / f"{name}.yaml").write_text(text, encoding="utf-8")
+
+
+def write_campaign(folder: Path, settings: str) -> None:
+    """Write the campaign anew, with other settings of the mission."""
+    text = CAMPAIGN.replace("{parts: 10}", settings)
+    (folder / "works.yaml").write_text(text, encoding="utf-8")
 
 
 def command(*words: object) -> list[str]:
