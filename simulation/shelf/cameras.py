@@ -1,6 +1,9 @@
 """The camera that looks into the shelf from its front."""
 
+from collections.abc import Iterable
+
 import numpy as np
+from numpy.typing import NDArray
 
 from perception.camera import CameraModel
 from perception.shelf.types import Shelf
@@ -58,3 +61,23 @@ def viewpoint_cameras(
             middle.width_px, middle.height_px, middle.focal_px, middle.centre_px, T_world_camera
         )
     return cameras
+
+
+def sees_floor(
+    cameras: Iterable[CameraModel], x_m: NDArray[np.float64], y_m: NDArray[np.float64]
+) -> NDArray[np.bool_]:
+    """Say which places on the floor of an empty shelf any of the cameras sees, shape (h, w).
+
+    Args:
+        cameras: Before the shelf.
+        x_m: Columns, along the shelf, shape (w,).
+        y_m: Rows, into it, shape (h,).
+    """
+    x, y = np.meshgrid(x_m, y_m)
+    places_m = np.column_stack([x.ravel(), y.ravel(), np.zeros(x.size)])
+    seen = np.zeros(x.size, dtype=bool)
+    for camera in cameras:
+        points_px = camera.project(places_m)
+        size_px = np.array([camera.width_px, camera.height_px])
+        seen |= ((points_px >= -0.5) & (points_px <= size_px - 0.5)).all(axis=1)
+    return seen.reshape(x.shape)

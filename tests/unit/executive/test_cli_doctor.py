@@ -7,6 +7,7 @@ from typer.testing import CliRunner
 
 from executive.cli import cmd_doctor, main
 from executive.cli.doctor_checks import CHECKS, Check, CheckError
+from executive.engine.loading.library import packaged_trees
 from robots import layout
 from robots.interfaces import ARMS
 from robots.reach import ReachMap
@@ -91,11 +92,27 @@ def test_a_cell_whose_robot_stands_in_its_table_exits_with_3(quick_reach, tmp_pa
     assert "at home, " in result.stdout
 
 
-@pytest.mark.parametrize(
-    ("cell", "message"),
-    [("yumi_tabel", "did you mean 'yumi_table'"), ("dry", "expected a cell of world table_cell")],
-)
-def test_a_cell_that_cannot_be_judged_is_refused(cell, message):
-    result = CliRunner().invoke(main.app, ["doctor", cell])
+def test_every_cell_that_ships_is_judged(quick_reach, tmp_path):
+    for file in sorted((packaged_trees() / "cells").glob("*.yaml")):
+        picture = tmp_path / f"{file.stem}.png"
+        result = CliRunner().invoke(main.app, ["doctor", file.stem, "--picture", str(picture)])
+        assert result.exit_code == 0, result.output
+        assert file.stem in result.stdout
+        assert picture.is_file() == (file.stem != "dry")
+
+
+def test_a_shelf_without_a_cup_is_warned_of(tmp_path):
+    cell = tmp_path / "bare.yaml"
+    cell.write_text(
+        "format: 1\ncell: bare\nworld: shelf_kinematic\nconfig: {tool: {suction: false}}\n"
+    )
+    picture = str(tmp_path / "reach.png")
+    result = CliRunner().invoke(main.app, ["doctor", str(cell), "--picture", picture])
+    assert result.exit_code == 0
+    assert "nothing can be taken out" in result.stdout
+
+
+def test_a_cell_that_is_not_known_is_refused():
+    result = CliRunner().invoke(main.app, ["doctor", "yumi_tabel"])
     assert result.exit_code != 0
-    assert message in str(result.exception)
+    assert "did you mean 'yumi_table'" in str(result.exception)
