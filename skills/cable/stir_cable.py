@@ -2,6 +2,7 @@
 
 from typing import Annotated
 
+from executive.core.outcome import failure
 from executive.core.skill import In, SkillRun
 from perception.camera import CameraFrame
 from skills.cable.grasping import tangent_at
@@ -18,14 +19,19 @@ class StirCable(ShiftSkill):
     """Grasp the middle of a random piece of cable and shift it into free space.
 
     SUCCESS: the cable was held, moved and laid down.
-    FAILURE: `grasp.unreachable` when no arm reaches any piece; `grasp.missed` when the
+    FAILURE: `cable.gone` when there is none in view: it has fallen off, or hangs where the camera
+        does not see it; `grasp.unreachable` when no arm reaches any piece; `grasp.missed` when the
         fingers closed on nothing; a motion reason.
     stop(): arms come to rest; a held cable stays held.
     """
 
+    REASONS = ShiftSkill.REASONS | {"cable.gone"}
+
     def run(self, frame: Annotated[CameraFrame, In("overhead frame")]) -> SkillRun:
         """Hold a piece and shift it."""
         found = yield from self._worker.run(self._vision.pieces, frame.image)
+        if not found:
+            return failure("cable.gone", "no cable is in view")
         pieces = [piece for piece in found if len(piece) > SHORTEST_PX]
         order = self._rng.permutation(len(pieces))[:MOST_PIECES]
         holds = []

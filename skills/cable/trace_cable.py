@@ -10,6 +10,7 @@ from perception.cable.interfaces import CableVision
 from perception.cable.types import Endpoint, Trace, TraceStart
 from perception.camera import CameraFrame
 from skills.cable.find_start_points import start_at
+from skills.cable.over_edge import leaving
 
 # A trace that tells as much as this about the whole cable needs no other one beside it.
 ENOUGH = 0.5
@@ -49,7 +50,7 @@ class TraceCable(Skill):
                 break
         if best is None:
             return failure("trace.none", "there is no cable at the start point")
-        return success(trace=best)
+        return success(trace=leaving(best, frame))
 
 
 def _telling(trace: Trace) -> float:

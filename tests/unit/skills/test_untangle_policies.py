@@ -38,6 +38,7 @@ class Look:
     ends: int = 2
     start: bool = True
     explained: float = 1.0
+    pieces: bool = True
 
 
 KNOTTED = Look(knots=1, knotted=0.98)
@@ -58,7 +59,8 @@ class ScriptedVision:
         return np.zeros(image.shape, dtype=bool)
 
     def pieces(self, image):
-        return (np.column_stack([np.linspace(400, 600, 50), np.full(50, 375.0)]),)
+        piece = np.column_stack([np.linspace(400, 600, 50), np.full(50, 375.0)])
+        return (piece,) if self.now.pieces else ()
 
     def endpoints(self, image):
         self.taken += 1
@@ -127,12 +129,13 @@ class Flown:
 
     outcome: MissionOutcome
     claim: CableClaim
+    reason: str
 
 
-def flown(*looks, arms=None, camera=None, **inputs):
+def flown(*looks, arms=None, camera=None, vision_of=ScriptedVision, **inputs):
     """Run the mission over scripted looks; return outcome, claim and what the arms did."""
     mission = load_mission(str(MISSION), skills=skills(), types=port_types())
-    script, cell = ScriptedVision(*looks), Cell()
+    script, cell = vision_of(*looks), Cell()
     names = {policy.vision for policy in POLICIES.values() if policy.vision} | {
         *("best", "classic", "learned")
     }
@@ -147,7 +150,8 @@ def flown(*looks, arms=None, camera=None, **inputs):
     tree = build(mission, devices=devices, clock=cell.clock, inputs=inputs)
     acts = Acts(tree)
     result = Runner(tree, cell, tick_hz=10.0, observers=(acts,), timeout_s=60.0).run()
-    return Flown(result.outcome, tree.outputs().get("claim")), acts.names, vision
+    claim = tree.outputs().get("claim")
+    return Flown(result.outcome, claim, str(result.reason)), acts.names, vision
 
 
 @pytest.mark.parametrize("policy", POLICY_NAMES)
@@ -196,6 +200,31 @@ def test_who_goes_by_belief_traces_from_an_end_among_strands_all_the_same():
 def test_without_interactive_perception_it_only_looks_again():
     result, acts, _ = flown(Look(ends=0), Look(ends=0), DONE, policy="no_interactive")
     assert (result.outcome, acts) == (MissionOutcome.SUCCESS, [])
+
+
+def test_a_mission_without_cable_in_view_says_so():
+    result, acts, _ = flown(Look(ends=0, pieces=False))
+    assert result.outcome is not MissionOutcome.SUCCESS
+    assert "cable.gone" in result.reason
+    assert acts == []
+
+
+def test_cable_over_an_arm_is_laid_down_before_anything_else():
+    high = frame()
+    high.depth_m[:] = 1.0
+    flat = replace(high, depth_m=high.depth_m.copy())
+    high.depth_m[298:303] = 0.8
+    shown = iter([high])
+
+    class SeesRows(ScriptedVision):
+        def cable_pixels(self, image):
+            cable = np.zeros(image.shape, dtype=bool)
+            cable[298:303] = True
+            return cable
+
+    camera = type("Camera", (), {"capture": staticmethod(lambda: next(shown, flat))})()
+    result, acts, _ = flown(DONE, camera=camera, vision_of=SeesRows)
+    assert (result.claim.untangled, acts) == (True, ["shake_off"])
 
 
 def test_the_vision_that_is_asked_for_is_that_of_policies_without_their_own():
