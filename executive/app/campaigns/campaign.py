@@ -121,9 +121,15 @@ class Campaign:
 def _mission_file(mission: str, beside: Path) -> str:
     """Return the file of a mission next to the document that names it, or the name itself."""
     for file in (beside / mission, beside / f"{mission}.yaml"):
-        if file.is_file():
+        if file.is_file() and not _is_campaign(file):
             return str(file)
     return mission
+
+
+def _is_campaign(file: Path) -> bool:
+    """Return whether a file looks like a campaign, which may have the name of its mission."""
+    lines = file.read_text(encoding="utf-8", errors="replace").splitlines()
+    return any(line.startswith("campaign:") for line in lines)
 
 
 def _sources(mission: Mission) -> tuple[SourceFile, ...]:
