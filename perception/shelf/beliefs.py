@@ -23,6 +23,7 @@ class SeenObject:
         first: Where it stood when it was first seen.
         number: Which segment of the latest detections shows it, or `OUT_OF_VIEW`.
         share: How much of it the latest view shows, in [0, 1].
+        measured: How much of it the view showed in which its box was measured.
     """
 
     label: str
@@ -33,6 +34,7 @@ class SeenObject:
     first: Box
     number: int
     share: float
+    measured: float
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -48,9 +50,8 @@ class ShelfBelief:
         weights: Probability of each cell, shape (K,); adds up to 1.
         organisation: Estimated share of objects that stand where they belong, in [0, 1].
         floor: Which cells of the floor are known to be free, shape (nx, ny).
-        met: Footprints of what moves have met unseen, shape (M, 4).
-        met_after: After how many moves each of them was met.
-        been: Where objects were moved from, label and box, in order.
+        met: Footprints of what moves have met and nothing seen explains, shape (M, 4).
+        been: Where objects were moved from, or could not be moved to, label and box, in order.
         picture: The latest look with the belief drawn over it.
         looks: Looks so far.
     """
@@ -64,7 +65,6 @@ class ShelfBelief:
     organisation: float
     floor: Bools
     met: Floats
-    met_after: tuple[int, ...]
     been: tuple[tuple[str, Box], ...]
     picture: ColourImage
     looks: int

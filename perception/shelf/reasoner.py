@@ -8,7 +8,7 @@ import numpy as np
 from perception.camera import CameraModel
 from perception.rgbd import RgbdFrame
 from perception.shelf.affinity import AffinityMatrix
-from perception.shelf.beliefs import SeenObject, ShelfBelief
+from perception.shelf.beliefs import OUT_OF_VIEW, SeenObject, ShelfBelief
 from perception.shelf.casting import BoxCaster
 from perception.shelf.detections import Detections
 from perception.shelf.drawing import drawn_belief
@@ -20,11 +20,12 @@ from perception.shelf.planning.free_floor import CELL_M, covered_cells, free_cel
 from perception.shelf.planning.looking_ahead import (
     ANYHOW,
     FIXED,
+    UNSEEN,
     Depth,
     Situation,
     look_ahead,
 )
-from perception.shelf.planning.moves import Move, Plan
+from perception.shelf.planning.moves import Move, Plan, moved_box
 from perception.shelf.planning.room import Reach, footprints, overlapping
 from perception.shelf.planning.tidying import tidying_move
 from perception.shelf.planning.ways_out import freeing_move
@@ -42,10 +43,12 @@ MISTAKEN = 1e-3
 # What a push has met unseen is the target, or something else: places that do not touch it are less
 # likely by this factor.
 NOT_MET, TOUCHING_M = 0.3, 0.005
-# For so many moves it is remembered that something was met.
-REMEMBERED = 4
+# What was met is explained by an object that ends well inside it, or by so much free floor.
+SIDE_M, EXPLAINED_SHARE = 0.001, 0.95
 # How well the place is known of a target that was seen from another side, and only partly.
 GLIMPSE_M = 0.02
+# What is the target with this probability is worth moves that show more of it.
+WORTH_A_MOVE = 0.2
 # After these failures an object is not where it was, and must be looked for.
 GONE = ("push.nothing_there", "suction.lost")
 
@@ -98,7 +101,6 @@ class SearchReasoner:
             organisation=0.5,
             floor=np.zeros(cells, dtype=bool),
             met=np.zeros((0, 4)),
-            met_after=(),
             been=(),
             picture=np.zeros((self._camera.height_px, self._camera.width_px, 3), dtype=np.uint8),
             looks=0,
@@ -124,15 +126,21 @@ class SearchReasoner:
             floor=self._floor(belief, view, caster, objects),
             looks=belief.looks + 1,
         )
-        seen = self._weighted(seen, possible)
+        seen = self._weighted(replace(seen, met=_unexplained(seen)), possible)
         heat = poses.heat(seen.weights)
         picture = drawn_belief(frame.colour, detections.segments, heat, seen.objects, belief.target)
         return replace(seen, picture=picture)
 
     def choose(self, belief: ShelfBelief) -> Plan | None:
         """See `ShelfReasoning`."""
-        # Where something was taken for the target and is not sure, the search goes on without it.
-        return look_ahead(self._situation(self.removed(belief, belief.target)), Depth())
+        # Something that was taken for the target may be something else that hides it.
+        others = self.removed(belief, belief.target)
+        return (
+            self._nearer_look(belief)
+            or look_ahead(self._situation(others), Depth())
+            # Where all has been tried, it is tried again: the shelf has changed meanwhile.
+            or look_ahead(self._situation(replace(others, been=(), met=belief.met[:0])), Depth())
+        )
 
     def clear_way(self, belief: ShelfBelief, label: str) -> Move | None:
         """See `ShelfReasoning`."""
@@ -157,7 +165,7 @@ class SearchReasoner:
             been=(*belief.been, (label, before.box)),
             plausible=np.maximum(plausible / plausible.max(), MISTAKEN**2),
         )
-        return _meeting(_forgetting(moved), met)
+        return _meeting(moved, met)
 
     def refused(self, belief: ShelfBelief, move: Move, failure: str) -> ShelfBelief:
         """See `ShelfReasoning`."""
@@ -166,11 +174,21 @@ class SearchReasoner:
             return belief
         if failure in GONE:
             return self.removed(belief, move.label)
+        tried = (move.label, moved_box(move, thing.box))
+        belief = replace(belief, been=(*belief.been, tried))
         return _meeting(belief, contact_of(move, thing.box, failure)[None])
 
     def removed(self, belief: ShelfBelief, label: str) -> ShelfBelief:
         """See `ShelfReasoning`."""
         return replace(belief, objects=tuple(one for one in belief.objects if one.label != label))
+
+    def _nearer_look(self, belief: ShelfBelief) -> Plan | None:
+        """Return what shows more of a thing that may be the target; None where there is none."""
+        found = belief.found
+        if found is None or found.certainty < WORTH_A_MOVE:
+            return None
+        move = self.clear_way(belief, belief.target)
+        return None if move is None else Plan((move,), found.certainty, 1.0 / found.certainty)
 
     def _felt(self, belief: ShelfBelief, start: Box, end: Box, met: Floats) -> Floats:
         """Return how likely each place is by how a move went, shape (K,).
@@ -199,7 +217,8 @@ class SearchReasoner:
             labels=tuple(one.label for one in belief.objects),
             boxes=tuple(one.box for one in belief.objects),
             movable=np.array(
-                [FIXED if one.label in fixed else ANYHOW for one in belief.objects], dtype=np.int64
+                [FIXED if one.label in fixed else self._movable(one) for one in belief.objects],
+                dtype=np.int64,
             ),
             met=belief.met,
             floor=belief.floor,
@@ -209,6 +228,9 @@ class SearchReasoner:
             weights=belief.weights,
             been=belief.been,
         )
+
+    def _movable(self, one: SeenObject) -> int:
+        return UNSEEN if self._reach.by_sight and one.number == OUT_OF_VIEW else ANYHOW
 
     def _weighted(self, belief: ShelfBelief, possible: Bools) -> ShelfBelief:
         """Weigh the poses that are possible now by semantics, as far as the shelf is in order."""
@@ -256,18 +278,33 @@ class SearchReasoner:
 
 def _meeting(belief: ShelfBelief, met: Floats) -> ShelfBelief:
     """Add what was met, shape (M, 4)."""
-    after = (len(belief.been),) * len(met)
-    return replace(belief, met=np.vstack([belief.met, met]), met_after=(*belief.met_after, *after))
+    return replace(belief, met=np.vstack([belief.met, met]))
 
 
-def _forgetting(belief: ShelfBelief) -> ShelfBelief:
-    """Forget what was met some moves ago: it may have been one of the objects moved since."""
-    kept = [len(belief.been) - after <= REMEMBERED for after in belief.met_after]
-    return replace(
-        belief,
-        met=belief.met[np.array(kept, dtype=bool)],
-        met_after=tuple(after for after, keep in zip(belief.met_after, kept, strict=True) if keep),
-    )
+def _unexplained(belief: ShelfBelief) -> Floats:
+    """Return what was met and is neither an object that is known by now nor free, shape (M, 4)."""
+    known = footprints([one.box for one in belief.objects])
+    kept = [
+        not _begins_in(row, known) and _free_share(belief.floor, row) < EXPLAINED_SHARE
+        for row in belief.met
+    ]
+    return belief.met[np.array(kept, dtype=bool)]
+
+
+def _begins_in(met: Floats, known: Floats) -> bool:
+    """Say whether a side of an object lies in what was met; one that covers it stops nothing."""
+    axis = int(np.argmin(met[2:] - met[:2]))
+    sides = known[:, [axis, axis + 2]]
+    inside = ((sides > met[axis] + SIDE_M) & (sides < met[axis + 2] - SIDE_M)).any(axis=1)
+    return bool((inside & overlapping(met, known)).any())
+
+
+def _free_share(floor: Bools, met: Floats) -> float:
+    """Return the share of the cells in what was met that are known to be free."""
+    low = np.maximum(np.ceil(met[:2] / CELL_M - 0.5).astype(int), 0)
+    high = np.floor(met[2:] / CELL_M - 0.5).astype(int) + 1
+    cells = floor[low[0] : high[0], low[1] : high[1]]
+    return float(cells.mean()) if cells.size else 0.0
 
 
 def _glimpsed(belief: ShelfBelief) -> Floats:

@@ -19,6 +19,8 @@ WORST_FIT = 0.7
 # An object is gone when this share of where it stood is seen to be free.
 GONE = 0.3
 MARGIN_M = 0.02
+# What is seen of an object is where it was known to be, when it lies so far beside that at most.
+SAME_M = 0.006
 UNKNOWN = "unknown"
 
 
@@ -62,15 +64,19 @@ def tracked(look: Look, before: Sequence[SeenObject], stock: Stock) -> tuple[See
         seen = _sighted(look, names[: len(readings)], stock)
     shares = _shares(look, seen)
     fresh = tuple(
-        SeenObject(
-            names[number],
-            _certainty(rows[number], names[number], stock),
-            rows[number],
-            sighting.box,
-            sighting.sure,
-            before[partners[number]].first if number in partners else sighting.box,
-            number,
-            shares[number],
+        _measured(
+            SeenObject(
+                names[number],
+                _certainty(rows[number], names[number], stock),
+                rows[number],
+                sighting.box,
+                sighting.sure,
+                sighting.box,
+                number,
+                shares[number],
+                shares[number],
+            ),
+            before[partners[number]] if number in partners else None,
         )
         for number, sighting in seen.items()
     )
@@ -147,6 +153,18 @@ def _agreement(here: Floats, there: Floats) -> Floats:
     one, other = np.hstack([here, rest[0]]), np.hstack([there, rest[1]])
     shares: Floats = np.minimum(one[:, None], other[None]).sum(axis=2)
     return shares
+
+
+def _measured(now: SeenObject, before: SeenObject | None) -> SeenObject:
+    """Return an object where it was measured best: slivers tell little of where the rest is."""
+    if before is None:
+        return now
+    sure, known = footprints([now.sure, before.box])
+    inside = (sure[:2] > known[:2] - SAME_M).all() and (sure[2:] < known[2:] + SAME_M).all()
+    alike = now.box.size_m == before.box.size_m
+    if not (inside and alike and now.share < before.measured):
+        return replace(now, first=before.first)
+    return replace(now, first=before.first, box=before.box, measured=before.measured)
 
 
 def _shares(look: Look, seen: dict[int, Sighting]) -> dict[int, float]:

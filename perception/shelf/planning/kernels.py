@@ -71,7 +71,7 @@ def _overlap(ax: float, ay: float, bx: float, by: float, other: Floats) -> bool:
 
 
 @kernel
-def _blade_fits(
+def blade_fits(
     boxes: Floats, index: int, sign: int, met: Floats, width_m: float, reach: Floats
 ) -> bool:
     """Say whether the blade can come in beside an object; see `room.blade_fits`."""
@@ -104,7 +104,7 @@ def _ahead(own: Floats, other: Floats, sign: int, gap: float, room: float) -> fl
 
 
 @kernel
-def _room(
+def room_beside(
     boxes: Floats, index: int, sign: int, met: Floats, width_m: float, reach: Floats
 ) -> float:
     """Return how far an object can be pushed; see `room.push_room_m`."""
@@ -168,7 +168,7 @@ def moves_from(
 
     Args:
         boxes: All objects, shape (B, 5).
-        movable: Which of them may be moved: 1 yes, 2 by pushes alone, 3 by the cup alone, 0 no.
+        movable: Which of them may be moved: 1 yes, 2 by pushes alone, 3 by the cup alone, else no.
         met: What is in the way unseen, footprints, shape (M, 4).
         shelf_m: Width and depth of the shelf.
         reach: What the tool needs, in the order of the fields' numbers above.
@@ -179,14 +179,14 @@ def moves_from(
     which, ends = [(0, 0) for _ in range(0)], [(0.0, 0.0) for _ in range(0)]
     place = np.empty(4)
     for index in range(len(boxes)):
-        if movable[index] == 0:
+        if movable[index] not in (1, 2, 3):
             continue
         own = boxes[index]
         if movable[index] != 3:
             for sign in (-1, 1):
-                if not _blade_fits(boxes, index, sign, met, shelf_m[0], reach):
+                if not blade_fits(boxes, index, sign, met, shelf_m[0], reach):
                     continue
-                room = _room(boxes, index, sign, met, shelf_m[0], reach)
+                room = room_beside(boxes, index, sign, met, shelf_m[0], reach)
                 if room < 0.01:
                     continue
                 count = int(room / steps_m[0] + 0.5)
@@ -251,8 +251,8 @@ def _effort(boxes: Floats, movable: Ints, met: Floats, width_m: float, reach: Fl
         elif movable[index] in (1, 2):
             for side in range(2):
                 sign = 2 * side - 1
-                if _blade_fits(boxes, index, sign, met, width_m, reach):
-                    room = _room(boxes, index, sign, met, width_m, reach)
+                if blade_fits(boxes, index, sign, met, width_m, reach):
+                    room = room_beside(boxes, index, sign, met, width_m, reach)
                     share = min(1.0, room / (ROOMY * (own[2] - own[0])))
                     shares[index, side] = share
                     stoppers[index, side] = _stopper(boxes, index, sign, room, reach[GAP])

@@ -15,17 +15,22 @@ from perception.camera import CameraModel
 from perception.shelf.planning.kernels import Ints, assess, consider, moves_from
 from perception.shelf.planning.moves import Move, Place, Plan, Push
 from perception.shelf.planning.outlook import outlook, restricted
+from perception.shelf.planning.partings import partings, pushes_of
 from perception.shelf.planning.room import Reach, footprints
 from perception.shelf.types import Bools, Box, Floats, Shelf, Size
 
-# Whether an object may be moved, and how.
-FIXED, ANYHOW, BY_PUSH, BY_CUP = 0, 1, 2, 3
+# Whether an object may be moved, and how; what is out of view may be moved once it is seen.
+FIXED, ANYHOW, BY_PUSH, BY_CUP, UNSEEN = range(5)
 # An object this close to where it has been is back there.
 BACK_M = 0.015
 # Poses that are less likely together than this are not planned for.
 REST = 0.02
 # Of two moves that are as good, the shorter one: a metre costs this part of a move.
 HASTE_1_M = 1e-3
+# Partings are thought of for so many of the likeliest poses, and so many of them weighed.
+PARTED, WEIGHED = 40, 80
+# What shows less of the target's probability shows nothing.
+LEAST_SHOWN = 1e-3
 # So many children of a branch compete for each place in the beam.
 SHORTLIST = 4
 
@@ -59,14 +64,15 @@ class Situation:
         camera: From where the next look will be.
         labels: Names of the objects.
         boxes: Where they stand, in the order of `labels`.
-        movable: How each may be moved (`FIXED`, `ANYHOW`, `BY_PUSH`, `BY_CUP`), shape (B,).
+        movable: How each may be moved (`FIXED`, `ANYHOW`, `BY_PUSH`, `BY_CUP`, `UNSEEN`),
+            shape (B,).
         met: Footprints of what is in the way unseen, shape (M, 4).
         floor: Which cells of the floor are known to be free, as `free_floor` has them.
         cell_m: Size of these cells.
         target_m: Size of the target.
         places_m: Where its centre may be, shape (K, 2).
         weights: Probability of each place, shape (K,).
-        been: Where objects were moved from; none is brought back there.
+        been: Where objects were moved from, or could not be moved to: none is brought there.
     """
 
     shelf: Shelf
@@ -95,6 +101,12 @@ class _Branch:
     cost: float
     moves: tuple[Move, ...] = ()
     shows: tuple[float, ...] = ()
+
+    @property
+    def toil(self) -> float:
+        """How many moves it makes for each time that it finds the target."""
+        found = 1.0 - self.unfound
+        return (self.spent - self.unfound) / found if found > LEAST_SHOWN else np.inf
 
 
 def look_ahead(situation: Situation, depth: Depth | None = None) -> Plan | None:
@@ -158,10 +170,17 @@ class _Search:
         self._view = outlook(situation.camera, situation.places_m[poses], situation.target_m)
         weights = self._hidden(weights)
         kept = _likely(weights)
+        self._places_m = situation.places_m[poses][kept]
         self._view = restricted(self._view, kept)
         self._weights = weights[kept] / weights[kept].sum()
 
     def best(self) -> Plan | None:
+        ahead, parting = self._by_beam(), self._by_parting()
+        if ahead is None or parting is None:
+            return _plan(ahead or parting)
+        return _plan(min(ahead, parting, key=lambda branch: branch.toil))
+
+    def _by_beam(self) -> _Branch | None:
         start = _Branch(self._inputs.boxes, self._weights, 1.0, 1.0, np.inf)
         beam, done = [start], list[_Branch]()
         for _ in range(self._depth.moves):
@@ -172,11 +191,57 @@ class _Search:
             beam = [branch for branch in beam if branch.unfound >= REST]
             if not beam:
                 break
-        ends = [*done, *beam]
-        if not ends:
-            return None
-        first = min(ends, key=lambda branch: branch.cost)
-        return Plan(first.moves, first.shows[0], first.cost)
+        return min([*done, *beam], key=lambda branch: branch.cost, default=None)
+
+    def _by_parting(self) -> _Branch | None:
+        """Return the pushes of many objects that are the least toil, where any show anything."""
+        situation, inputs = self._situation, self._inputs
+        likely = np.argsort(-self._weights, kind="stable")[:PARTED]
+        ways = partings(
+            inputs.boxes,
+            np.isin(situation.movable, (ANYHOW, BY_PUSH, UNSEEN)),
+            inputs.met,
+            situation.target_m[:2],
+            (float(inputs.shelf_m[0]), situation.reach.gap_m),
+            self._view,
+            self._places_m,
+            likely[self._weights[likely] > 0.0],
+        )
+        start = _Branch(inputs.boxes, self._weights, 1.0, 1.0, np.inf)
+        best: _Branch | None = None
+        for way in sorted(ways, key=lambda one: one.count)[:WEIGHED]:
+            if best is not None and way.count >= best.toil:
+                break
+            pushes = pushes_of(
+                way, inputs.boxes, situation.movable != UNSEEN, inputs.met, inputs.shelf_m[0],
+                inputs.reach,
+            )  # fmt: skip
+            branch = self._pushed(start, pushes) if self._may_begin(pushes) else None
+            if branch is not None and (best is None or branch.toil < best.toil):
+                best = branch
+        return best
+
+    def _may_begin(self, pushes: Sequence[tuple[int, Floats]]) -> bool:
+        first = pushes[:1]
+        moved = np.array([index for index, _ in first], dtype=np.int64)
+        corners = np.array([corner for _, corner in first]).reshape(-1, 2)
+        return len(first) == 1 and bool(self._fresh(moved, corners)[0])
+
+    def _pushed(self, branch: _Branch, pushes: Sequence[tuple[int, Floats]]) -> _Branch | None:
+        """Return a branch with pushes one after the other; None when they show nothing."""
+        for index, corner in pushes:
+            cost = branch.spent
+            longer = self._child(branch, (index, False, corner), 0.0, cost)
+            seen, shown, _ = self._assess(longer.boxes, longer.weights)
+            unfound = max(branch.unfound - shown, 0.0)
+            branch = replace(
+                longer,
+                weights=np.where(seen == 1, 0.0, longer.weights),
+                unfound=unfound,
+                spent=branch.spent + unfound,
+                shows=(*branch.shows, shown),
+            )
+        return branch if branch.unfound < 1.0 - LEAST_SHOWN else None
 
     def _hidden(self, weights: Floats) -> Floats:
         """Return the weights of the poses that do not show already, by a hair of their block.
@@ -254,6 +319,10 @@ class _Search:
                 back = np.abs(corners - np.array(box.low_m[:2])).max(axis=1) < BACK_M
                 fresh &= ~(back & (moved == index))
         return fresh
+
+
+def _plan(branch: _Branch | None) -> Plan | None:
+    return None if branch is None else Plan(branch.moves, branch.shows[0], branch.cost)
 
 
 def _best(branches: list[_Branch], most: int) -> list[_Branch]:

@@ -3,6 +3,8 @@
 from dataclasses import dataclass
 from typing import ClassVar, Literal
 
+from perception.shelf.types import Box
+
 
 @dataclass(frozen=True, slots=True)
 class Push:
@@ -35,6 +37,13 @@ class Place:
 
 
 Move = Push | Place
+
+
+def moved_box(move: Move, box: Box) -> Box:
+    """Return where an object would stand after a move."""
+    if isinstance(move, Place):
+        return box.at(move.x_m, move.y_m)
+    return box.at(box.x_m + move.shift_m, box.y_m)
 
 
 @dataclass(frozen=True, slots=True)

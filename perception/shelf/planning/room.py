@@ -28,12 +28,15 @@ class Reach:
         overlap_m: How far along the object's side the blade must reach to push it.
         gap_m: What stays between a pushed object and what stopped it.
         suction: Whether there is a cup, so that objects can be taken out and put elsewhere.
+        by_sight: Whether only what the latest look shows can be moved (thesis, section 5.2); arms
+            that go by touch can move what they know of.
     """
 
     blade_m: float = 0.01
     overlap_m: float = 0.02
     gap_m: float = 0.002
     suction: bool = True
+    by_sight: bool = False
 
 
 def footprints(boxes: Sequence[Box]) -> Floats:

@@ -167,13 +167,42 @@ def test_where_an_object_was_pushed_along_the_target_is_not(search, looked):
     assert (pushed.plausible[way] < 0.01).all()
 
 
-def test_what_a_push_has_met_is_remembered_for_some_moves(search, looked):
-    tea = object_of(looked, "tea").box
-    belief = search.moved(looked, "tea", tea, contact_beside(tea, 1)[None])
-    assert len(belief.met) == 1
+def test_what_a_push_has_met_is_remembered_until_that_is_seen(search, looked):
+    rice = object_of(looked, "rice")
+    beside = contact_beside(rice.box, -1)
+    met = search.moved(looked, "rice", rice.box, beside[None])
     for _ in range(6):
-        belief = search.moved(belief, "rice", BOXES["rice"], np.zeros((0, 4)))
-    assert len(belief.met) == 0
+        met = search.moved(met, "tea", BOXES["tea"], np.zeros((0, 4)))
+    assert len(met.met) == 1
+    # A look that shows free floor there.
+    assert len(after_look(search, met, BOXES).met) == 0
+    # What stands behind other things stays, until something is known to begin there.
+    behind = replace(met, met=contact_beside(Box(0.4, 0.25, (0.02, 0.02, 0.1)), 1)[None])
+    assert len(after_look(search, behind, BOXES).met) == 1
+
+
+def test_what_may_be_the_target_is_uncovered_first(search, looked):
+    half_open = {**BOXES, "tea": BOXES["tea"].at(0.52, 0.1)}
+    belief = search.moved(looked, "tea", half_open["tea"], np.zeros((0, 4)))
+    belief = after_look(search, belief, half_open)
+    unsure = replace(belief, objects=tuple(
+        replace(one, certainty=0.5) if one.label == "salt" else one for one in belief.objects
+    ))  # fmt: skip
+    plan = search.choose(unsure)
+    assert plan.moves[0].label == "tea"
+    assert plan.shows == 0.5
+
+
+def test_a_sliver_does_not_move_what_was_seen_whole(search, looked):
+    before = {**BOXES, "rice": BOXES["rice"].at(0.4, 0.03), "tea": BOXES["tea"].at(0.4, 0.2)}
+    whole = {**before, "rice": BOXES["rice"].at(0.7, 0.03)}
+    belief = after_look(search, search.begin("salt"), whole)
+    tea = object_of(belief, "tea")
+    for x_m in (0.4, 0.34, 0.46):
+        hidden = {**before, "rice": Box(x_m, 0.03, (0.22, 0.08, 0.25))}
+        belief = after_look(search, belief, hidden)
+        assert object_of(belief, "tea").box.x_m == pytest.approx(tea.box.x_m, abs=0.01)
+        assert object_of(belief, "tea").box.y_m == pytest.approx(tea.box.y_m, abs=0.01)
 
 
 def test_a_move_that_failed_is_not_chosen_again(search, looked):
