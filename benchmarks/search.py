@@ -24,14 +24,15 @@ import numpy as np
 from benchmarks.harness import Row, mean, median, percentile_95, share
 from benchmarks.search_bounds import least_moves
 from benchmarks.search_ours import search_ours
-from benchmarks.search_proofs import pushes_may_show
 from benchmarks.search_trials import Way, poses_of, search_by
 from benchmarks.searching import Trial
 from executive.core.errors import InputError
 from perception.shelf.affinity import AffinityMatrix, Origin, affinity_from_scores
 from perception.shelf.hidden_poses import HiddenPoses
 from perception.shelf.language.stored import BEST_MODELS, stored_affinity
+from perception.shelf.planning.proofs import pushes_may_show
 from perception.shelf.planning.room import Reach
+from simulation.shelf.cameras import front_camera
 from simulation.shelf.scenes import Scene, SceneRules, draw_scene
 from simulation.shelf.taxonomy import Domain, shipped_domain, taxonomy_affinity
 
@@ -151,8 +152,14 @@ def solve(job: Job) -> dict[str, Trial]:
     least = least_moves(scene, reach)
     # With a cup there is no proof: what nobody has solved may be solvable.
     solved = any(trial.success for trial in (*found.values(), least))
-    may = pushes_may_show(scene, reach) if job.kind.regime == PUSHES else solved
+    may = _pushes_may_solve(scene, reach) if job.kind.regime == PUSHES else solved
     return {**found, LEAST: least, SOLVABLE: Trial(may, 0)}
+
+
+def _pushes_may_solve(scene: Scene, reach: Reach) -> bool:
+    """Say whether there is no proof that pushes cannot solve a scene."""
+    target, camera = scene.names.index(scene.target), front_camera(scene.shelf)
+    return pushes_may_show(scene.boxes, target, scene.shelf, camera, reach.gap_m)
 
 
 def run(quick: bool, seed: int) -> Sequence[Row]:

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from benchmarks.search_proofs import pushes_may_show
 from perception.shelf.planning.looking_ahead import ANYHOW, UNSEEN, Situation, look_ahead
 from perception.shelf.planning.moves import moved_box
+from perception.shelf.planning.proofs import pushes_may_show
 from perception.shelf.planning.room import Reach, footprints, overlapping
 from perception.shelf.types import Box, Shelf
 from simulation.shelf.cameras import front_camera
@@ -31,6 +31,10 @@ def situation(scene, movable=None):
         floor=np.ones((80, 35), dtype=bool), cell_m=0.01, target_m=TARGET.size_m,
         places_m=np.array([[TARGET.x_m, TARGET.y_m]]), weights=np.ones(1),
     )  # fmt: skip
+
+
+def may_show(*boxes):
+    return pushes_may_show((*boxes, TARGET), len(boxes), SHELF, front_camera(SHELF), PUSHES.gap_m)
 
 
 def packed(width_m, count, free_m, y_m=0.1):
@@ -83,13 +87,13 @@ def test_no_plan_begins_with_what_is_out_of_view():
 
 
 def test_what_no_pushes_can_solve_is_proved():
-    assert pushes_may_show(scene_of(*packed(0.2, 6, 0.12)), PUSHES)
-    assert not pushes_may_show(scene_of(*packed(0.2, 6, 0.0)), PUSHES)
+    assert may_show(*packed(0.2, 6, 0.12))
+    assert not may_show(*packed(0.2, 6, 0.0))
 
 
 @pytest.mark.parametrize("aside", [-1, 1])
 def test_order_is_kept_in_proofs(aside):
     # A wide box behind a narrow one can leave the target's ray to the side with room alone.
     wide = Box(0.4 + aside * 0.05, 0.2, (0.5, 0.06, 0.25))
-    assert not pushes_may_show(scene_of(wide, *packed(0.2, 6, 0.0)), PUSHES)
-    assert pushes_may_show(scene_of(Box(0.4, 0.2, (0.3, 0.06, 0.25))), PUSHES)
+    assert not may_show(wide, *packed(0.2, 6, 0.0))
+    assert may_show(Box(0.4, 0.2, (0.3, 0.06, 0.25)))

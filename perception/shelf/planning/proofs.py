@@ -1,4 +1,4 @@
-"""Scenes that no pushes can solve: a proof for each, from the order that pushes along a shelf keep.
+"""Shelves where no pushes can show a target: a proof, by the order that pushes along a shelf keep.
 
 An object that is pushed along the shelf cannot pass one that stands in its way. So where objects
 can ever stand are solutions of x_j - x_i >= d_ij. A pixel of the hidden target shows only where
@@ -9,38 +9,39 @@ the target has one, nothing helps. All objects but the target are taken to be mo
 what is not proved here may still not be solvable.
 """
 
-import numpy as np
-from numpy.typing import NDArray
+from collections.abc import Sequence
 
+import numpy as np
+
+from perception.camera import CameraModel
 from perception.shelf.casting import BoxCaster
 from perception.shelf.planning.kernels import kernel
-from perception.shelf.planning.room import Reach, footprints
-from perception.shelf.types import corners
-from simulation.shelf.cameras import front_camera
-from simulation.shelf.scenes import Scene
-
-Floats = NDArray[np.float64]
+from perception.shelf.planning.room import footprints
+from perception.shelf.types import Box, Floats, Shelf, corners
 
 TOUCH_M = 1e-6
 
 
-def pushes_may_show(scene: Scene, reach: Reach) -> bool:
-    """Say whether a pixel of the target could be brought to show; False is a proof.
+def pushes_may_show(
+    boxes: Sequence[Box], target: int, shelf: Shelf, camera: CameraModel, gap_m: float
+) -> bool:
+    """Say whether a pixel of a target could be brought to show; False is a proof.
 
     Args:
-        scene: The scene.
-        reach: What stays between objects; the room of a blade is not asked for.
+        boxes: All that stands on the shelf.
+        target: Which of them is not pushed.
+        shelf: The shelf.
+        camera: A level one that looks into it along y.
+        gap_m: What stays between objects; the room of a blade is not asked for.
     """
-    caster = BoxCaster(front_camera(scene.shelf))
-    target = scene.names.index(scene.target)
-    silhouette = caster.cast(*corners([scene.boxes[target]]))
+    caster = BoxCaster(camera)
+    silhouette = caster.cast(*corners([boxes[target]]))
     rays = caster.rays.reshape(-1, 3)[silhouette.pixel]
-    heights = np.array([[box.size_m[2]] for box in scene.boxes])
+    heights = np.array([[box.size_m[2]] for box in boxes])
     return bool(
         _any_shows(
-            np.hstack([footprints(list(scene.boxes)), heights]), target,
-            np.ascontiguousarray(rays), silhouette.depth_m, caster.origin_m.copy(),
-            scene.shelf.width_m, reach.gap_m,
+            np.hstack([footprints(boxes), heights]), target, np.ascontiguousarray(rays),
+            silhouette.depth_m, caster.origin_m.copy(), shelf.width_m, gap_m,
         )
     )  # fmt: skip
 
