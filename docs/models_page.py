@@ -48,8 +48,9 @@ def _row(folder: Path) -> str:
         f"{metrics['samples']:,}",
         f"{held['n']:,}",
         f"{100.0 * right:.1f} %",
-        f"{held['calibration_error']:.3f}",
-        f"{100.0 * held['error_of_surest_80']:.1f} %",
+        # What is no probability has no such figures.
+        f"{held['calibration_error']:.3f}" if "calibration_error" in held else "",
+        f"{100.0 * held['error_of_surest_80']:.1f} %" if "calibration_error" in held else "",
         f"{size_mb:.1f} MB",
     ]
     return _line(cells)

@@ -30,6 +30,10 @@ ABOUT: Mapping[str, Mapping[str, str]] = {
         "grid": "targets on the network's grid",
     },
     "thesis-crossing": {"visits": "of both strands, the upper one first"},
+    "thesis-spatial": {
+        "looks": "depth, whether it is known, sizes of the target, places",
+        "roots": "of the share of poses that would show in a pixel, over 0.02",
+    },
 }
 
 
