@@ -17,8 +17,8 @@ from skills.cable.pulling import PullSkill, ways_inwards
 REACH_ARC = 0.25
 # Nearer to the end of the trace the cable may hang over the edge of the table already.
 EDGE_ARC = 0.02
-# Cable nearer than this along the trace follows the hand, and is not in its way.
-OWN_M = 0.15
+# Cable nearer along the trace than the way, and this beyond it, comes along, and is not in its way.
+OWN_M = 0.1
 # Room beyond this on the way is as good as any [m], and ways are told apart by steps of this.
 ENOUGH_M, STEP_M = 0.06, 0.02
 
@@ -60,11 +60,11 @@ def free_first(ways_m: list[Floats], from_m: Floats, line_m: Floats) -> list[Flo
     """
     arcs_m = arc_lengths(line_m)
     held_m = arcs_m[int(np.linalg.norm(line_m - from_m, axis=1).argmin())]
-    resting_m = line_m[arcs_m < held_m - OWN_M]
     shares = np.linspace(0.2, 1.0, 9)[:, None]
 
     def crowding(way_m: Floats) -> int:
         path_m = from_m + shares * way_m[:2]
+        resting_m = line_m[arcs_m < held_m - float(np.linalg.norm(way_m)) - OWN_M]
         gaps_m = np.linalg.norm(path_m[:, None] - resting_m[None], axis=2)
         return -int(min(float(gaps_m.min(initial=ENOUGH_M)), ENOUGH_M) / STEP_M)
 
