@@ -223,7 +223,8 @@ def _fault(model: type[BaseModel], detail: ErrorDetails) -> str:
         return f"{name}: got {detail['input']!r}; expected {expected}"
     if detail["type"] == "value_error":
         return f"{name}: {detail['ctx']['error']}" if path else str(detail["ctx"]["error"])
-    return f"{name}: got {detail['input']!r}; {detail['msg']}"
+    expected = detail["msg"].replace("Input should be", "expected", 1)
+    return f"{name}: got {detail['input']!r}; {expected}"
 
 
 def _is_model(kind: object) -> TypeGuard[type[BaseModel]]:

@@ -16,7 +16,8 @@ from executive.engine.loading.loader import Checked, check_files
 
 def check(
     files: Annotated[
-        list[Path] | None, typer.Argument(help="YAML files, or folders of them.  [default: trees]")
+        list[Path] | None,
+        typer.Argument(help="YAML files, folders of them, or names.  [default: trees]"),
     ] = None,
     as_json: Annotated[
         bool, typer.Option("--json", help="Print one JSON document on stdout.")

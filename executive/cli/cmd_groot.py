@@ -8,12 +8,13 @@ import typer
 from rich.text import Text
 
 from executive.cli.console import chatter
+from executive.cli.recordings import recording_argument
 from executive.core.errors import InputError, recording_named_by_the_user
 
 
 def groot(
     recording: Annotated[
-        Path, typer.Argument(metavar="RUN", help="Recording of a run; it may still go on.")
+        Path, recording_argument("RUN", "Recording of a run, which may still go on")
     ],
     host: Annotated[
         str, typer.Option(help="Address; others than this machine's may watch but not steer.")

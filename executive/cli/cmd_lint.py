@@ -15,7 +15,8 @@ from executive.engine.lint.rules import RULES, WAIVER_ABOUT, WAIVER_CODE, WAIVER
 
 def lint(
     files: Annotated[
-        list[Path] | None, typer.Argument(help="YAML files, or folders of them.  [default: trees]")
+        list[Path] | None,
+        typer.Argument(help="YAML files, folders of them, or names.  [default: trees]"),
     ] = None,
     as_json: Annotated[
         bool, typer.Option("--json", help="Print one JSON document on stdout.")

@@ -11,6 +11,7 @@ from rich.console import Console
 from rich.text import Text
 
 from executive.cli.console import chatter, results
+from executive.cli.recordings import recording_argument
 from executive.cli.reported_run import (
     Debugging,
     HtmlOption,
@@ -43,7 +44,7 @@ class _Request:
 
 
 def resume(
-    recording: Annotated[Path, typer.Argument(help="Recording of the mission.")],
+    recording: Annotated[Path, recording_argument("RUN", "Recording of the mission")],
     wanted: Annotated[
         str,
         typer.Option(

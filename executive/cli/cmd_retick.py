@@ -9,6 +9,7 @@ import typer
 
 from executive.app.catalogue import port_types
 from executive.cli.console import results
+from executive.cli.recordings import RunArgument
 from executive.inspector.past import PastRun
 from executive.inspector.retick.retick import Retick
 from executive.inspector.retick.retick import retick as ticked_again
@@ -33,7 +34,7 @@ Beyond = Annotated[
 
 
 def retick(
-    recording: Annotated[Path, typer.Argument(metavar="RUN", help="Recording of a run.")],
+    recording: RunArgument,
     tree: Annotated[
         list[Path] | None,
         typer.Option(metavar="FILE", help="Edited tree or mission; may be given several times."),

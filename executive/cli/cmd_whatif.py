@@ -1,19 +1,19 @@
 """`cellwright whatif`: what a tree would have decided with another value, or another answer."""
 
-from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from executive.app.catalogue import port_types
 from executive.cli.cmd_retick import Beyond, print_and_exit
+from executive.cli.recordings import RunArgument
 from executive.inspector.past import PastRun
 from executive.inspector.retick.question import what_if
 from executive.inspector.retick.retick import retick
 
 
 def whatif(
-    recording: Annotated[Path, typer.Argument(metavar="RUN", help="Recording of a run.")],
+    recording: RunArgument,
     at: Annotated[str, typer.Option(metavar="TICK", help="In which tick: 41, -1, last or 12.3s.")],
     values: Annotated[
         list[str] | None,

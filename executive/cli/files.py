@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Final
 
 from executive.core.errors import InputError
+from executive.engine.loading.library import search_folders
 
 TREES: Final = (Path("trees"),)
 """What is meant where no file is named."""
@@ -18,9 +19,18 @@ def yaml_files(paths: Sequence[Path]) -> list[Path]:
     """
     found: dict[Path, None] = {}
     for path in paths:
-        if not path.exists():
-            raise InputError(f"{path}: no such file or folder; try the name of a YAML file")
-        found |= dict.fromkeys(sorted(path.rglob("*.yaml")) if path.is_dir() else [path])
+        there = path if path.exists() else _by_name(path)
+        found |= dict.fromkeys(sorted(there.rglob("*.yaml")) if there.is_dir() else [there])
     if not found:
         raise InputError(f"no YAML files in {', '.join(map(str, paths))}")
     return [*found]
+
+
+def _by_name(name: Path) -> Path:
+    """Return the document of that name where trees are looked for, as `run` does."""
+    for folder in search_folders(None, ()):
+        if (folder / f"{name}.yaml").is_file():
+            return folder / f"{name}.yaml"
+    raise InputError(
+        f"{name}: no such file or folder; try the name of a YAML file, or of a mission"
+    )

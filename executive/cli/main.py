@@ -20,39 +20,51 @@ from typer.core import TyperGroup
 from executive.core.errors import CellwrightError, InputError
 from executive.core.registry import closest
 
-_COMMANDS: Mapping[str, str] = MappingProxyType(
+_PANELS: Mapping[str, Mapping[str, str]] = MappingProxyType(
     {
-        "run": "executive.cli.cmd_run",
-        "resume": "executive.cli.cmd_resume",
-        "check": "executive.cli.cmd_check",
-        "lint": "executive.cli.cmd_lint",
-        "fmt": "executive.cli.cmd_fmt",
-        "attach": "executive.cli.cmd_attach",
-        "inspect": "executive.cli.cmd_inspect",
-        "ticks": "executive.cli.cmd_ticks",
-        "why": "executive.cli.cmd_why",
-        "why-not": "executive.cli.cmd_why",
-        "why-halted": "executive.cli.cmd_why",
-        "who": "executive.cli.cmd_who",
-        "history": "executive.cli.cmd_who",
-        "report": "executive.cli.cmd_report",
-        "diff": "executive.cli.cmd_diff",
-        "retick": "executive.cli.cmd_retick",
-        "whatif": "executive.cli.cmd_whatif",
-        "cover": "executive.cli.cmd_cover",
-        "campaign": "executive.cli.cmd_campaign",
-        "serve": "executive.cli.cmd_serve",
-        "groot": "executive.cli.cmd_groot",
-        "skills": "executive.cli.cmd_skills",
-        "tree": "executive.cli.cmd_tree",
-        "import": "executive.cli.cmd_import",
-        "export": "executive.cli.cmd_export",
-        "perceive": "executive.cli.cmd_perceive",
-        "affinity": "executive.cli.cmd_affinity",
-        "train": "executive.cli.cmd_train",
-        "doctor": "executive.cli.cmd_doctor",
+        "Missions": {
+            "run": "executive.cli.cmd_run",
+            "resume": "executive.cli.cmd_resume",
+            "attach": "executive.cli.cmd_attach",
+            "campaign": "executive.cli.cmd_campaign",
+            "serve": "executive.cli.cmd_serve",
+        },
+        "Trees": {
+            "check": "executive.cli.cmd_check",
+            "lint": "executive.cli.cmd_lint",
+            "fmt": "executive.cli.cmd_fmt",
+            "tree": "executive.cli.cmd_tree",
+            "skills": "executive.cli.cmd_skills",
+            "import": "executive.cli.cmd_import",
+            "export": "executive.cli.cmd_export",
+        },
+        "What a run did": {
+            "inspect": "executive.cli.cmd_inspect",
+            "ticks": "executive.cli.cmd_ticks",
+            "why": "executive.cli.cmd_why",
+            "why-not": "executive.cli.cmd_why",
+            "why-halted": "executive.cli.cmd_why",
+            "who": "executive.cli.cmd_who",
+            "history": "executive.cli.cmd_who",
+            "report": "executive.cli.cmd_report",
+            "diff": "executive.cli.cmd_diff",
+            "retick": "executive.cli.cmd_retick",
+            "whatif": "executive.cli.cmd_whatif",
+            "cover": "executive.cli.cmd_cover",
+            "groot": "executive.cli.cmd_groot",
+        },
+        "Cells, and what sees in them": {
+            "doctor": "executive.cli.cmd_doctor",
+            "perceive": "executive.cli.cmd_perceive",
+            "affinity": "executive.cli.cmd_affinity",
+            "train": "executive.cli.cmd_train",
+        },
     }
 )
+"""Panels of the help page: commands, and the modules that they are in."""
+
+_COMMANDS = {name: module for panel in _PANELS.values() for name, module in panel.items()}
+_PANEL_OF = {name: panel for panel, commands in _PANELS.items() for name in commands}
 
 
 class _LazyCommands(TyperGroup):
@@ -76,11 +88,11 @@ class _LazyCommands(TyperGroup):
         name = cmd_name.replace("-", "_")
         name = f"{name}_" if keyword.iskeyword(name) else name
         command = getattr(import_module(_COMMANDS[cmd_name]), name)
-        holder = typer.Typer()
+        holder, panel = typer.Typer(), _PANEL_OF[cmd_name]
         if isinstance(command, typer.Typer):
-            holder.add_typer(command, name=cmd_name)
+            holder.add_typer(command, name=cmd_name, rich_help_panel=panel)
         else:
-            holder.command(cmd_name)(command)
+            holder.command(cmd_name, rich_help_panel=panel)(command)
         return typer.main.get_group(holder).commands[cmd_name]
 
 

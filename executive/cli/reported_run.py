@@ -128,8 +128,8 @@ def run_and_exit(subject: Subject, prepare: Prepare, *, as_json: bool) -> NoRetu
     report = result.report
     if as_json:
         typer.echo(report.model_dump_json(exclude={"truth"} if report.truth is None else None))
-    else:
-        _print_summary(result)
+    elif report.ticks or report.recording or report.outcome != "error":
+        _print_summary(result)  # of what did not even begin, the error has said all
     raise typer.Exit(exit_code)
 
 
