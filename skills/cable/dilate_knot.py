@@ -28,8 +28,9 @@ MOST_PAIRS = 60
 SHARES_OF_TRAVEL = (1.0, 0.8, 0.6, 0.4, 0.2)
 # How many of the best places are tried before that.
 MOST_ENDS = 8
-# So many pairs of sites in reach are tried for a way to such a place.
-MOST_PULLS = 4
+# So many pairs of sites in reach are tried for a way to such a place, each for so many places: to
+# find that two arms are in each other's way takes seconds. Places that lie this near are alike.
+MOST_PULLS, MOST_TRIES, ALIKE_M = 2, 2, 0.1
 
 UP_M = (np.array([0.0, 0.0, CLEARANCE_M]),)
 
@@ -140,16 +141,17 @@ class DilateKnot(ArmSkill):
             if not planned:
                 yield grip
                 continue
-            without.append(grip)
-            yield from self._with_places(grip)
+            left_first = hands[0] == "left"
+            ends_m = tuple(best_places(grip.pull, left_first, MOST_ENDS))
+            without.append(replace(grip, ends_m=ends_m))
+            yield from self._with_places(without[-1])
             if len(without) == MOST_PULLS:
                 break
         yield from without
 
     def _with_places(self, grip: "_Grip") -> Iterator["_Grip"]:
         """Yield the way to hold with the best places to go to that both hands can make."""
-        ends_m = best_places(grip.pull, grip.hands[0] == "left", MOST_ENDS)
-        for number, ends in enumerate(ends_m):
+        for ends in unlike(grip.ends_m)[:MOST_TRIES]:
             onward_m = tuple(
                 carried(np.append(end_m - goal.position_m[:2], 0.0))
                 for end_m, goal in zip(ends, grip.goals, strict=True)
@@ -159,7 +161,9 @@ class DilateKnot(ArmSkill):
                 for goal, onward in zip(grip.goals, onward_m, strict=True)
             )
             if self._arms.assign((hovers[0], hovers[1])) == grip.hands:
-                yield replace(grip, ends_m=ends_m[number:], onward_m=(onward_m[0], onward_m[1]))
+                rest = [other for other in grip.ends_m if other is not ends]
+                onward = (onward_m[0], onward_m[1])
+                yield replace(grip, ends_m=(ends, *rest), onward_m=onward)
                 return
 
     def _pull_apart(
@@ -184,6 +188,16 @@ class DilateKnot(ArmSkill):
         # Where hands cannot lay it down at the end of their way, the cable falls these 3 cm.
         yield from self._move_by(dict.fromkeys(hands, -up_m))
         return failed
+
+
+def unlike(ends_m: Sequence[Ends]) -> list[Ends]:
+    """Return those places that are not much the same as better ones."""
+    kept = list[Ends]()
+    for ends in ends_m:
+        gaps_m = [np.linalg.norm(np.subtract(ends, other), axis=1).max() for other in kept]
+        if min(gaps_m, default=np.inf) > ALIKE_M:
+            kept.append(ends)
+    return kept
 
 
 def held_pull(frame: CameraFrame, trace: Trace, cage: GraspSite, pinch: GraspSite) -> Pull:

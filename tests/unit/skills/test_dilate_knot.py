@@ -6,7 +6,7 @@ from cell_fakes import ArrivingArms, finished, frame, overhand
 
 from executive.core.work import InlineWorker
 from perception.cable.grasp_sites import cage_sites, pinch_sites
-from skills.cable.dilate_knot import DilateKnot, apart
+from skills.cable.dilate_knot import DilateKnot, apart, unlike
 from skills.cable.knot_sites import HANDS_APART_M, REACH_X_M, given_pairs, ranked_pairs
 
 
@@ -99,3 +99,16 @@ def test_given_places_come_first_and_a_walk_makes_room_for_two_hands():
     walked = given_pairs(trace, near, frame())[0]
     gap_m = np.linalg.norm(walked[0].point_px - walked[1].point_px) / 1e3
     assert HANDS_APART_M <= gap_m < HANDS_APART_M + 0.05
+
+
+def test_places_that_are_much_the_same_are_tried_once():
+    here, beside, far = (
+        tuple(np.array(end) for end in ends)
+        for ends in (
+            ((0.0, 0.0), (0.4, 0.0)),
+            ((0.02, 0.0), (0.42, 0.0)),
+            ((0.0, 0.15), (0.4, 0.15)),
+        )
+    )
+    kept = unlike([here, beside, far])
+    assert [ends is one for ends, one in zip(kept, (here, far), strict=True)] == [True, True]
