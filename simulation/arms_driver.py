@@ -51,6 +51,11 @@ class SimArmsDriver:
         """Whether neither an arm nor a finger moves; a held motion rests."""
         return self._follower.resting and not any(g.moving for g in self._grippers.values())
 
+    @property
+    def motion(self) -> Trajectory | None:
+        """The motion that is executed, also while it is held; None at rest and in a stop."""
+        return self._follower.motion
+
     def advance(self, duration_s: float) -> None:
         """Send the body where it has to be `duration_s` from now."""
         self._follower.advance(duration_s)

@@ -54,6 +54,11 @@ class Follower:
         return self._mode != "rest"
 
     @property
+    def motion(self) -> Trajectory | None:
+        """The motion that is executed, also while it is held; None at rest and in a stop."""
+        return self._motion if self._mode == "motion" else None
+
+    @property
     def resting(self) -> bool:
         """Whether the joints rest; those of a held motion do."""
         return self._mode == "rest" or self.held()

@@ -7,11 +7,13 @@ import numpy as np
 from executive.core.world import StreamMessage
 from perception.camera import Camera
 from robots.interfaces import ArmsDriver
+from robots.motion.model import yumi_model
 from simulation.arms_driver import SimArmsDriver
 from simulation.cable.truth import CableTruth, cable_truth
 from simulation.clock import SimClock
 from simulation.freezing_camera import FreezingCamera
 from simulation.overhead_camera import OverheadCamera
+from simulation.plan_stream import PlanStream
 from simulation.snapshots import TableSnapshot
 from simulation.streams import Stream, joint_states_json, scene_json
 from simulation.table_cables import lay_cables
@@ -83,6 +85,7 @@ class TableCell:
         rates = settings.physics
         self._joint_states = Stream("/joint_states", "JointStates", rates.joint_states_hz)
         self._scene = Stream("/scene", "Scene", rates.scene_hz)
+        self._plans = PlanStream(yumi_model(self.scene.placement), rates.joint_states_hz)
         self._steps_a_record = max(1, rates.step_hz // rates.joint_states_hz)
         self._record()
 
@@ -106,7 +109,7 @@ class TableCell:
     def drain_streams(self) -> Iterable[StreamMessage]:
         """Return joint states and scenes since the last call, in the order of time."""
         with self._turns.look():
-            messages = [*self._joint_states.drain(), *self._scene.drain()]
+            messages = [*self._joint_states.drain(), *self._scene.drain(), *self._plans.drain()]
         return sorted(messages, key=lambda message: message.time_s)
 
     def stop(self) -> None:
@@ -146,7 +149,7 @@ class TableCell:
         state = TableSnapshot.from_bytes(snapshot)
         self._world.take_state(state.world)
         self.camera.take_noise_state(state.camera)
-        for stream in (self._joint_states, self._scene):
+        for stream in (self._joint_states, self._scene, self._plans):
             stream.restart()
         self._record()
 
@@ -166,6 +169,7 @@ class TableCell:
         now_s, world = self._world.now_s(), self._world
         if self._joint_states.due(now_s):
             self._joint_states.add(now_s, joint_states_json(self.driver.state()))
+        self._plans.watch(now_s, self.driver.motion)
         if self._scene.due(now_s):
             names, rod = world.body.link_names, world.rod
             poses = world.body.link_poses(names)

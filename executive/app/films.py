@@ -89,16 +89,17 @@ def oblique_camera() -> CameraModel:
 def _drawn(
     frame: SceneFrame, camera: CameraModel, renderer: Renderer, rng: np.random.Generator
 ) -> ColourImage:
-    assert frame.cable_m is not None
     poses = np.array(list(frame.link_poses.values()))
     links = dict(zip(frame.link_poses, pose_matrices(poses[:, :3], poses[:, 3:]), strict=True))
-    cable = cable_shapes(frame.cable_m, frame.cable_radius_m, plug_poses(frame.cable_m))
-    rendering = renderer.render(join([robot_shapes(yumi(), links), cable]))
+    cables = [
+        cable_shapes(line_m, frame.cable_radius_m, plug_poses(line_m)) for line_m in frame.cables_m
+    ]
+    rendering = renderer.render(join([robot_shapes(yumi(), links), *cables]))
     grey = expose(rendering, SensorParameters(speckle=0.0), rng)
     bright = cv2.convertScaleAbs(grey, alpha=BRIGHTENED)
     canvas: ColourImage = np.asarray(cv2.cvtColor(bright, cv2.COLOR_GRAY2BGR), dtype=np.uint8)
-    line = np.rint(camera.project(frame.cable_m)).astype(np.int32)
-    cv2.polylines(canvas, [line], isClosed=False, color=WHITE, thickness=2, lineType=cv2.LINE_AA)
+    lines = [np.rint(camera.project(line_m)).astype(np.int32) for line_m in frame.cables_m]
+    cv2.polylines(canvas, lines, isClosed=False, color=WHITE, thickness=2, lineType=cv2.LINE_AA)
     if frame.trace_m is not None:
         points = np.rint(camera.project(frame.trace_m)).astype(np.int32)
         cv2.polylines(canvas, [points], isClosed=False, color=TRACE, thickness=1)

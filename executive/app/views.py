@@ -5,14 +5,24 @@ believes in pixels is laid on the table here, where cameras and robots may both 
 """
 
 import logging
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
+from PIL import Image
 from pydantic import BaseModel
 
+from executive.app.overlays import (
+    Pictures,
+    encoded_array,
+    picture_overlay,
+    plan_overlay,
+    target_overlay,
+)
 from executive.core.errors import DeviceError
 from executive.core.world import StreamMessage
 from executive.engine.recording.messages import RecordedNode
@@ -21,6 +31,7 @@ from executive.engine.recording.values import ValueEncoder
 from executive.engine.ticks import NodeStatus, Tick
 from perception.cable.types import Trace
 from perception.camera import CameraFrame, CameraModel
+from perception.shelf.beliefs import ShelfBelief
 from robots.descriptions import DESCRIPTIONS
 from robots.descriptions.yumi import yumi
 from robots.interfaces import Floats
@@ -28,15 +39,20 @@ from robots.placement import table_scene
 from robots.shelf_arm.scene import ROBOT, ShelfSize, open_scene
 from robots.viewer import CameraCone, Eye, LiveViewer, SceneFrame, ShownBox, Stage
 from robots.viewer import write_html as write_page
+from robots.viewer.overlays import Overlay
 from robots.viewer.rerun_file import RerunFile, need_rerun
+from robots.viewer.stage import TABLE_EYE
 
 _SCENE_TOPIC = "/scene"
+_PLAN_TOPIC = "/plan"
 _JOINT_STATES_TOPIC = "/joint_states"
 SHELF_WORLD, SHELF_SCHEMA = "shelf_cell", "ShelfScene"
 # From before the shelf, over the arm's left shoulder.
 SHELF_EYE = Eye((-1.0, -1.85, 1.1), (0.4, -0.3, 0.0))
+# Where the latest picture stands: behind the table, and beside the shelf.
+TABLE_SCREEN_M, SHELF_SCREEN_M, SCREEN_WIDTH_M = (-0.95, -0.55, 0.2), (1.45, 0.25, 0.35), 0.6
 _BELIEF_KEY = ":knotted_probability"
-_SHOWN_TYPES = (Trace, CameraFrame, float)
+_SHOWN_TYPES = (Trace, CameraFrame, ShelfBelief, float)
 
 _log = logging.getLogger(__name__)
 
@@ -55,6 +71,7 @@ class _Scene(BaseModel):
     links: dict[str, list[float]]
     cable_nodes_m: list[list[float]]
     cable_radius_m: float
+    more_cables_m: list[list[list[float]]] = []
 
 
 class _ShelfScene(BaseModel):
@@ -94,8 +111,19 @@ class _Camera(BaseModel):
 class SceneFollower:
     """Puts together what a scene looks like from the messages of a run, one after another."""
 
-    def __init__(self, nodes: Sequence[RecordedNode] = ()) -> None:
-        """Begin before the first message; `nodes` is the table that ticks refer to."""
+    def __init__(
+        self,
+        nodes: Sequence[RecordedNode] = (),
+        png_of: Callable[[int], bytes | None] = lambda _: None,
+    ) -> None:
+        """Begin before the first message.
+
+        Args:
+            nodes: The table that ticks refer to.
+            png_of: Returns an image by the number that values refer to it by.
+        """
+        self._png_of = png_of
+        self._overlays: dict[str, Overlay] = {}
         parents = {node.parent for node in nodes}
         self._leaves = {i: node.name for i, node in enumerate(nodes) if i not in parents}
         self._scene: StreamMessage | None = None
@@ -105,9 +133,12 @@ class SceneFollower:
         self._doing = ""
         self._belief = ""
 
-    def on_scene(self, message: StreamMessage) -> None:
-        """Take the latest message of the scene stream."""
-        self._scene = message
+    def on_stream(self, message: StreamMessage) -> None:
+        """Take a message of the scene, or of the plan that is carried out."""
+        if message.topic == _SCENE_TOPIC:
+            self._scene = message
+        elif message.topic == _PLAN_TOPIC:
+            self._lay("plan", plan_overlay(message.data))
 
     def on_tick(self, tick: Tick) -> None:
         """Take a tick; values are in their JSON form."""
@@ -127,7 +158,28 @@ class SceneFollower:
             trace_m=self._trace_m,
             camera=self._cone,
             caption=" · ".join(part for part in (self._doing, self._belief) if part),
+            overlays=dict(self._overlays),
         )
+
+    def _lay(self, name: str, overlay: Overlay | None) -> None:
+        if overlay is None:
+            self._overlays.pop(name, None)
+        else:
+            self._overlays[name] = overlay
+
+    def _show(self, image: Mapping[str, Any]) -> None:
+        """Stand the picture that a value refers to in the scene."""
+        shelf = self._scene is not None and self._scene.schema == SHELF_SCHEMA
+        png = self._png_of(int(image.get("image", -1)))
+        if png is not None:
+            screen, eye = (SHELF_SCREEN_M, SHELF_EYE) if shelf else (TABLE_SCREEN_M, TABLE_EYE)
+            self._lay("picture", picture_overlay(png, np.array(screen), eye, SCREEN_WIDTH_M))
+
+    def _believe(self, value: Mapping[str, Any]) -> None:
+        places_m, weights = (encoded_array(value[name]) for name in ("places_m", "weights"))
+        if places_m is not None and weights is not None:
+            self._lay("target", target_overlay(places_m.reshape(-1, 2), weights))
+        self._show(value["picture"])
 
     def _look_at(self, key: str, value: Any) -> None:
         if isinstance(value, float) and key.endswith(_BELIEF_KEY):
@@ -136,6 +188,9 @@ class SceneFollower:
             return
         if value.get("$type") == _type_name(CameraFrame):
             self._see_through(_Camera.model_validate(value["camera"]).model())
+            self._show(value["image"])
+        elif value.get("$type") == _type_name(ShelfBelief):
+            self._believe(value)
         elif value.get("$type") == _type_name(Trace) and self._camera is not None:
             points_px = np.array(_Array.model_validate(value["points_px"]).values)
             self._trace_m = self._camera.on_plane(points_px)
@@ -153,7 +208,11 @@ class SceneFollower:
 def _table_frame(data: bytes, time_s: float) -> SceneFrame:
     scene = _Scene.model_validate_json(data)
     return SceneFrame(
-        time_s, _arrays(scene.links), np.array(scene.cable_nodes_m), scene.cable_radius_m
+        time_s,
+        _arrays(scene.links),
+        np.array(scene.cable_nodes_m),
+        scene.cable_radius_m,
+        more_cables_m=tuple(np.array(line) for line in scene.more_cables_m),
     )
 
 
@@ -177,8 +236,9 @@ class LiveView:
             DeviceError: It does not start.
         """
         self._viewer = LiveViewer(_stage(world))
-        self._follower = SceneFollower()
-        self._encoder = ValueEncoder(store_image=lambda _: 0)
+        self._pictures: list[bytes] = []
+        self._follower = SceneFollower(png_of=self._pictures.__getitem__)
+        self._encoder = ValueEncoder(store_image=self._keep)
         self._alive = True
 
     @property
@@ -189,15 +249,17 @@ class LiveView:
     def on_tick(self, tick: Tick) -> None:
         """Take what a tick wrote that can be seen."""
         shown = [write for write in tick.writes if isinstance(write.value, _SHOWN_TYPES)]
+        self._pictures.clear()
         writes = tuple(replace(each, value=self._encoder.encode(each.value)) for each in shown)
         self._follower.on_tick(replace(tick, writes=writes))
 
     def on_streams(self, messages: Sequence[StreamMessage]) -> None:
         """Show the latest scene; a viewer that breaks goes dark, and the run goes on."""
+        for message in messages:
+            self._follower.on_stream(message)
         scenes = [message for message in messages if message.topic == _SCENE_TOPIC]
         if not scenes or not self._alive:
             return
-        self._follower.on_scene(scenes[-1])
         frame = self._follower.frame(scenes[-1].time_s)
         try:
             if frame is not None:
@@ -205,6 +267,13 @@ class LiveView:
         except DeviceError as error:
             self._alive = False
             _log.warning("%s", error)
+
+    def _keep(self, image: NDArray[np.uint8]) -> int:
+        """Keep an image of the tick; return its number."""
+        file = BytesIO()
+        Image.fromarray(image).save(file, format="PNG")
+        self._pictures.append(file.getvalue())
+        return len(self._pictures) - 1
 
     def close(self) -> None:
         """End the viewer."""
@@ -268,13 +337,13 @@ def _joint_curves(run: Recording) -> Mapping[str, Sequence[tuple[float, float]]]
 
 def scene_frames(recording: Recording) -> Iterator[SceneFrame]:
     """Yield the scene as it was known at every tick of a recording."""
-    follower = SceneFollower(recording.header.nodes)
-    scenes = (each for each in recording.streams() if each.topic == _SCENE_TOPIC)
-    scene = next(scenes, None)
+    follower = SceneFollower(recording.header.nodes, Pictures(recording).png)
+    messages = iter(recording.streams())
+    message = next(messages, None)
     for tick in recording.ticks():
-        while scene is not None and scene.time_s <= tick.time_s:
-            follower.on_scene(scene)
-            scene = next(scenes, None)
+        while message is not None and message.time_s <= tick.time_s:
+            follower.on_stream(message)
+            message = next(messages, None)
         follower.on_tick(tick)
         frame = follower.frame(tick.time_s)
         if frame is not None:

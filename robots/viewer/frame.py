@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from robots.interfaces import Floats
+from robots.viewer.overlays import Overlay
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -43,12 +44,16 @@ class SceneFrame:
         link_poses: Pose of each link's URDF frame by the link's name, shape (7,): position [m],
             then quaternion xyzw; of each box its middle. What is left out stays where it was.
         cable_m: Centre line of the cable in order, shape (N, 3), N >= 2 [m]; None without one.
+            Of several it is the first.
         cable_radius_m: Radius of the cable [m].
         trace_m: What perception last took for the cable, shape (M, 3), M >= 2 [m]; None before
             the first look.
         camera: The overhead camera; None before the first look.
         caption: One line on what goes on, e.g. the running node and its belief.
         boxes: Boxes that move, by names that no link has; the same in every frame.
+        more_cables_m: Centre lines of the other cables, as many in every frame.
+        overlays: What is laid over the scene, by name. One that is the same object as in the
+            frame before has not changed.
     """
 
     time_s: float
@@ -59,6 +64,13 @@ class SceneFrame:
     camera: CameraCone | None = None
     caption: str = ""
     boxes: Mapping[str, ShownBox] = field(default_factory=dict)
+    more_cables_m: tuple[Floats, ...] = ()
+    overlays: Mapping[str, Overlay] = field(default_factory=dict)
+
+    @property
+    def cables_m(self) -> tuple[Floats, ...]:
+        """Centre lines of all cables."""
+        return () if self.cable_m is None else (self.cable_m, *self.more_cables_m)
 
 
 def thinned(points: Floats, count: int) -> Floats:

@@ -15,6 +15,7 @@ import umsgpack
 from executive.core.errors import RecordingError
 from robots.interfaces import Floats
 from robots.viewer.frame import SceneFrame, thinned
+from robots.viewer.overlays import Overlay, draw_overlay
 from robots.viewer.shapes import TUBE_SIDES
 from robots.viewer.stage import (
     CABLE_POINTS,
@@ -101,14 +102,16 @@ def _still(stage: Stage, frames: Sequence[SceneFrame]) -> dict[str, object]:
     first = frames[0]
     cameras = [frame.camera for frame in frames if frame.camera is not None]
     commands = [*stage.commands(), *(draw_box(name, box) for name, box in first.boxes.items())]
+    for number, cable_m in enumerate(first.cables_m):
+        commands.append(draw_cable(cable_m, first.cable_radius_m, number))
     if first.cable_m is not None:
-        commands.append(draw_cable(first.cable_m, first.cable_radius_m))
         commands.append(draw_trace(replace(first, trace_m=first.cable_m)))
     commands += draw_camera(cameras[0]) if cameras else ()
     return {
         "commands": [_text(umsgpack.packb(command.lower())) for command in commands],
         "metre": METRE,
         "sides": TUBE_SIDES,
+        "cables": [min(len(cable_m), CABLE_POINTS) for cable_m in first.cables_m],
         "cable_radius": first.cable_radius_m,
         "trace_radius": TRACE_RADIUS_M,
     }
@@ -122,7 +125,8 @@ def _moving(stage: Stage, frames: Sequence[SceneFrame]) -> dict[str, object]:
     rows = []
     for frame in frames:
         poses.update(frame.link_poses)
-        rows.append([*_poses(poses, links), *_points(frame.cable_m, CABLE_POINTS)])
+        cables = [_points(cable_m, CABLE_POINTS) for cable_m in frame.cables_m]
+        rows.append(np.concatenate([_poses(poses, links), *cables]))
     times_s = [round(frame.time_s - frames[0].time_s, 3) for frame in frames]
     return {
         "start": frames[0].time_s,
@@ -132,6 +136,7 @@ def _moving(stage: Stage, frames: Sequence[SceneFrame]) -> dict[str, object]:
         "frames": _text(np.array(rows).astype("<i2").tobytes()),
         "traces": _traces(frames, times_s),
         "captions": _captions(frames, times_s),
+        "overlays": _overlays(frames, times_s),
     }
 
 
@@ -159,6 +164,22 @@ def _traces(frames: Sequence[SceneFrame], times_s: Sequence[float]) -> list[tupl
             points = _points(frame.trace_m, TRACE_POINTS)
             changes.append((time_s, _text(points.astype("<i2").tobytes())))
         shown = frame.trace_m
+    return changes
+
+
+def _overlays(
+    frames: Sequence[SceneFrame], times_s: Sequence[float]
+) -> dict[str, list[tuple[float, str]]]:
+    """Return by name when each overlay changes, and the command that draws it anew."""
+    changes: dict[str, list[tuple[float, str]]] = {}
+    shown: Mapping[str, Overlay] = {}
+    for frame, time_s in zip(frames, times_s, strict=True):
+        for name in sorted(frame.overlays.keys() | shown.keys()):
+            overlay = frame.overlays.get(name)
+            if overlay is not shown.get(name):
+                command = umsgpack.packb(draw_overlay(name, overlay).lower())
+                changes.setdefault(name, []).append((time_s, _text(command)))
+        shown = frame.overlays
     return changes
 
 

@@ -4,6 +4,7 @@ import atexit
 import subprocess
 import sys
 import time
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -13,6 +14,7 @@ import zmq
 from executive.core.errors import DeviceError
 from robots.interfaces import Floats
 from robots.viewer.frame import CameraCone, SceneFrame
+from robots.viewer.overlays import Overlay, draw_overlay
 from robots.viewer.stage import Stage, draw_box, draw_cable, draw_camera, draw_trace, move_link
 
 SERVER_COMMAND = (sys.executable, "-u", "-m", "meshcat.servers.zmqserver")
@@ -42,6 +44,7 @@ class LiveViewer:
         self._poses: dict[str, Floats] = {}
         self._boxes: set[str] = set()
         self._trace: Floats | None = None
+        self._overlays: Mapping[str, Overlay] = {}
         self._camera: CameraCone | None = None
         self._server = subprocess.Popen(
             SERVER_COMMAND, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True,
@@ -78,8 +81,13 @@ class LiveViewer:
             if name not in self._poses or np.abs(pose - self._poses[name]).max() > _MOVED:
                 self._send(move_link(name, pose))
                 self._poses[name] = pose
-        if frame.cable_m is not None:
-            self._send(draw_cable(frame.cable_m, frame.cable_radius_m))
+        for number, cable_m in enumerate(frame.cables_m):
+            self._send(draw_cable(cable_m, frame.cable_radius_m, number))
+        for name in frame.overlays.keys() | self._overlays.keys():
+            overlay = frame.overlays.get(name)
+            if overlay is not self._overlays.get(name):
+                self._send(draw_overlay(name, overlay))
+        self._overlays = frame.overlays
         if frame.trace_m is not self._trace:
             self._send(draw_trace(frame))
             self._trace = frame.trace_m

@@ -15,11 +15,14 @@
   const data = whole(recording.frames);
   const traces = recording.traces.map(([time, points]) => [time, vectors(whole(points))]);
   const linkObjects = links.map((name) => viewer.scene_tree.find(["robot", name]).object);
-  // A cell without a cable has neither of the two.
-  const cable = viewer.scene_tree.find(["cable", "<object>"]).object;
+  // A cell without a cable has no trace either.
+  const cables = recording.cables.map((count, number) => ({
+    mesh: viewer.scene_tree.find([number ? `cable_${number}` : "cable", "<object>"]).object, count,
+  }));
   const trace = viewer.scene_tree.find(["trace", "<object>"]).object;
   const end = times[times.length - 1];
   let now = 0, playing = false, last = null, shownTrace = null;
+  const shownOverlays = {};
 
   function vectors(numbers) {
     const points = [];
@@ -66,14 +69,24 @@
         from[at + 6]).normalize();
       object.quaternion.copy(turn(a)).slerp(turn(b), share);
     });
-    if (recording.cable_radius > 0) {
-      bend(cable, vectors(mixed.subarray(7 * links.length)), recording.cable_radius);
+    let from = 7 * links.length;
+    for (const {mesh, count} of cables) {
+      bend(mesh, vectors(mixed.subarray(from, from + 3 * count)), recording.cable_radius);
+      from += 3 * count;
     }
 
     const points = latest(traces, now) ?? [];
     trace.visible = points.length > 0;
     if (trace.visible && points !== shownTrace) bend(trace, points, recording.trace_radius);
     shownTrace = points;
+
+    for (const [name, changes] of Object.entries(recording.overlays)) {
+      const command = latest(changes, now);
+      if (command === (shownOverlays[name] ?? null)) continue;
+      if (command) viewer.handle_command_bytearray(bytes(command));
+      else viewer.delete_path(["overlays", name]);
+      shownOverlays[name] = command;
+    }
 
     byId("note").textContent = latest(recording.captions, now) ?? "";
     byId("slider").value = now;

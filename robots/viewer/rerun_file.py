@@ -5,7 +5,7 @@ numbers. The viewer is `rerun FILE`, which the extra brings too; it reads files 
 version and the one before it, so a recording of ours is what to keep.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from importlib.util import find_spec
 from pathlib import Path
 from types import TracebackType
@@ -19,6 +19,7 @@ from robots.descriptions.model import Box, Capsule, Link, RobotDescription
 from robots.interfaces import Floats
 from robots.placement import PlanningScene
 from robots.viewer.frame import CameraCone, SceneFrame
+from robots.viewer.overlays import Dots, Lines, Overlay, Screen
 
 TIMELINE = "cell"
 _CABLE, _TRACE, _BOX, _SIGHT = (244, 244, 240), (255, 154, 46), (185, 166, 138), (91, 141, 239)
@@ -66,6 +67,7 @@ class RerunFile:
         self._file.send_recording_name(title)
         self._poses: dict[str, Floats] = {}
         self._trace: Floats | None = None
+        self._overlays: Mapping[str, Overlay] = {}
         self._camera: CameraCone | None = None
 
     def __enter__(self) -> Self:
@@ -110,8 +112,14 @@ class RerunFile:
                     translation=pose[:3], quaternion=self._rerun.Quaternion(xyzw=pose[3:])
                 )
                 self._file.log(f"world/robot/{name}", placed)
-        if frame.cable_m is not None:
-            self._line("world/cable", [frame.cable_m], frame.cable_radius_m, _CABLE)
+        for number, cable_m in enumerate(frame.cables_m):
+            path = f"world/cable_{number}" if number else "world/cable"
+            self._line(path, [cable_m], frame.cable_radius_m, _CABLE)
+        for name in sorted(frame.overlays.keys() | self._overlays.keys()):
+            overlay = frame.overlays.get(name)
+            if overlay is not self._overlays.get(name):
+                self._overlay(f"world/overlays/{name}", overlay)
+        self._overlays = frame.overlays
         if frame.trace_m is not None and frame.trace_m is not self._trace:
             self._trace = frame.trace_m
             self._line("world/trace", [frame.trace_m], _TRACE_RADIUS_M, _TRACE)
@@ -166,6 +174,19 @@ class RerunFile:
         self, path: str, strips_m: Sequence[Floats], radius_m: float, colour: tuple[int, int, int]
     ) -> None:
         drawn = self._rerun.LineStrips3D(strips_m, radii=[radius_m], colors=[colour])
+        self._file.log(path, drawn)
+
+    def _overlay(self, path: str, overlay: Overlay | None) -> None:
+        """Write lines and dots; pictures are in a recording as images already."""
+        match overlay:
+            case Lines(segments_m, colours):
+                drawn = self._rerun.LineStrips3D(segments_m, radii=[0.001], colors=colours)
+            case Dots(points_m, colours, size_m):
+                drawn = self._rerun.Points3D(points_m, radii=[0.5 * size_m], colors=colours)
+            case Screen():
+                return
+            case None:
+                drawn = self._rerun.Clear(recursive=False)
         self._file.log(path, drawn)
 
     def _still(self, path: str, what: object) -> None:

@@ -28,7 +28,11 @@ CABLE_POINTS = 120
 TRACE_POINTS = 120
 TRACE_RADIUS_M = 0.006  # wider than the cable: a halo where the trace agrees with it
 
-_CABLE = MeshPhongMaterial(color=0xF4F4F0, shininess=40)
+# Of several cables each has a shade of its own.
+_CABLES = tuple(
+    MeshPhongMaterial(color=colour, shininess=40)
+    for colour in (0xF4F4F0, 0x9CC9F2, 0xF2C49C, 0xB7E0A8)
+)
 _TRACE = MeshBasicMaterial(color=0xFF9A2E, opacity=0.8)
 _WOOD = MeshPhongMaterial(color=0xB9A68A)
 _CLOTH = MeshPhongMaterial(color=0x17181B, shininess=2)
@@ -63,6 +67,10 @@ class Eye:
     to_m: Vec3 = (0.0, 0.0, 0.0)
 
 
+# From beyond a table, over its right corner.
+TABLE_EYE = Eye((0.85, 1.50, 1.05))
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Stage:
     """A cell before anything moves.
@@ -77,7 +85,7 @@ class Stage:
 
     robot: RobotDescription
     scene: PlanningScene
-    eye: Eye = Eye((0.85, 1.50, 1.05))
+    eye: Eye = TABLE_EYE
     glass: frozenset[str] = frozenset()
 
     def commands(self) -> Iterator[Any]:
@@ -123,10 +131,11 @@ def draw_box(name: str, box: ShownBox) -> SetObject:
     return SetObject(Box(list(box.size_m)), material, _path(f"robot/{name}"))
 
 
-def draw_cable(cable_m: Floats, radius_m: float) -> SetObject:
+def draw_cable(cable_m: Floats, radius_m: float, number: int = 0) -> SetObject:
     """Return the command that draws a cable along its centre line, shape (N, 3)."""
     tube = Tube(thinned(cable_m, CABLE_POINTS), radius_m)
-    return SetObject(tube, _CABLE, _path("cable"))
+    material = _CABLES[number % len(_CABLES)]
+    return SetObject(tube, material, _path(f"cable_{number}" if number else "cable"))
 
 
 def draw_trace(frame: SceneFrame) -> SetObject | Delete:

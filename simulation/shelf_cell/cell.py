@@ -8,10 +8,13 @@ from executive.core.world import StreamMessage
 from perception.camera import CameraModel
 from perception.shelf.types import Shelf
 from robots.descriptions.kinova import kinova_joint_names
+from robots.descriptions.specs import kinova_spec
+from robots.motion.model import RobotModel
 from robots.shelf_arm import scene as place
 from robots.shelf_arm.build import kinova_shelf_tool
 from robots.shelf_tool import ToolShape
 from simulation.clock import SimClock
+from simulation.plan_stream import PlanStream
 from simulation.shelf.cameras import front_camera, viewpoint_cameras
 from simulation.shelf.scenes import Scene, SceneRules, draw_scene
 from simulation.shelf.stocking import stock_of
@@ -113,6 +116,8 @@ class ShelfCell:
             "/joint_states", "JointStates", settings.physics.joint_states_hz
         )
         self._scenes = Stream("/scene", "ShelfScene", settings.physics.scene_hz)
+        robot = RobotModel(kinova_spec(len(place.HOME_RAD)), place.arm_placement(size))
+        self._plans = PlanStream(robot, settings.physics.joint_states_hz)
         self._record()
 
     @property
@@ -140,7 +145,7 @@ class ShelfCell:
     def drain_streams(self) -> Iterable[StreamMessage]:
         """Return joint states and scenes since the last call, in the order of time."""
         with self._turns.look():
-            messages = [*self._joint_states.drain(), *self._scenes.drain()]
+            messages = [*self._joint_states.drain(), *self._scenes.drain(), *self._plans.drain()]
         return sorted(messages, key=lambda message: message.time_s)
 
     def stop(self) -> None:
@@ -179,6 +184,7 @@ class ShelfCell:
         now_s, world = self._world.now_s(), self._world
         if self._joint_states.due(now_s):
             self._joint_states.add(now_s, joint_states_json(JOINTS, self.driver.state()))
+        self._plans.watch(now_s, self.driver.motion)
         if self._scenes.due(now_s):
             held = world.cups.held
             self._scenes.add(now_s, scene_json(world.physics, self._colours, held))

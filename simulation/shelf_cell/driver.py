@@ -53,6 +53,11 @@ class SimShelfArmDriver:
         """Whether no joint moves; a held motion rests."""
         return self._follower.resting
 
+    @property
+    def motion(self) -> Trajectory | None:
+        """The motion that is executed, also while it is held; None at rest and in a stop."""
+        return self._follower.motion
+
     def advance(self, duration_s: float) -> None:
         """Send the arm where it has to be `duration_s` from now."""
         self._follower.advance(duration_s)

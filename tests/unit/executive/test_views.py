@@ -1,10 +1,13 @@
 """Live view and replay follow the same messages and show the same."""
 
+import json
+
 import numpy as np
 import pytest
 from toy_runs import RUNNING, Leaf, built, header_of
 
 from executive.app import views
+from executive.app.overlays import target_overlay
 from executive.core.errors import DeviceError, InputError, RecordingError
 from executive.core.world import StreamMessage
 from executive.engine.blackboard import Write
@@ -91,6 +94,43 @@ def test_replay_shows_the_scene_as_it_was_known_at_each_tick(recording):
     last = frames[-1]
     assert last.cable_radius_m == 0.0035
     assert last.caption == "look_at_it · P(knotted) 0.25"
+
+
+def test_all_cables_are_shown():
+    quat_xyzw = np.array([[0.0, 0.0, 0.0, 1.0]])
+    lines_m = [NODES_M, NODES_M[:9]]
+    data = scene_json(["left_link_1"], np.zeros((1, 3)), quat_xyzw, lines_m, 0.0035)
+    follower = views.SceneFollower()
+    follower.on_stream(StreamMessage("/scene", "Scene", 0.0, data))
+    assert [len(line_m) for line_m in follower.frame(0.0).cables_m] == [31, 9]
+
+
+def test_a_plan_is_shown_until_it_has_ended():
+    follower = views.SceneFollower()
+    follower.on_stream(scene(0.0))
+    ways = {"left": [[0.1 * k, 0.0, 0.2, 0.0, 0.0, 0.0, 1.0] for k in range(3)]}
+    for tools in (ways, {}):
+        data = json.dumps({"tools": tools, "duration_s": 1.0}).encode()
+        follower.on_stream(StreamMessage("/plan", "Plan", 0.0, data))
+        assert ("plan" in follower.frame(0.0).overlays) == bool(tools)
+
+
+def test_live_and_replay_show_the_picture_that_was_looked_at(recording, monkeypatch):
+    replayed = list(views.scene_frames(Recording.open(recording)))
+    shown = []
+    monkeypatch.setattr(views, "LiveViewer", lambda stage: shown.append(Screen(stage)) or shown[0])
+    play(views.open_live_view("table_cell"))
+    pictures = [each[-1].overlays["picture"] for each in (replayed, shown[0].frames)]
+    assert pictures[0].png == pictures[1].png
+    assert pictures[0].height_m == pytest.approx(0.5 * pictures[0].width_m)
+
+
+def test_where_a_target_may_be_is_brighter_where_it_is_likelier():
+    places_m = np.array([[0.1, 0.1], [0.2, 0.1], [0.3, 0.1]])
+    dots = target_overlay(places_m, np.array([0.6, 0.4, 1e-9]))
+    assert dots.points_m[:, :2] == pytest.approx(places_m[:2])
+    assert dots.colours[0].sum() > dots.colours[1].sum()
+    assert target_overlay(places_m[:0], np.zeros(0)) is None
 
 
 def test_trace_and_camera_are_laid_on_the_table(recording):

@@ -155,7 +155,7 @@ def test_streams_tell_joints_and_boxes(cell: ShelfCell) -> None:
     cell.tool.start(LookFrom("left"))
     finish(cell)
     messages = list(cell.drain_streams())
-    assert {message.schema for message in messages} == {"JointStates", "ShelfScene"}
+    assert {message.schema for message in messages} == {"JointStates", "Plan", "ShelfScene"}
     assert [message.time_s for message in messages] == sorted(m.time_s for m in messages)
     scene = json.loads(next(m.data for m in messages if m.schema == "ShelfScene"))
     assert set(scene["boxes"]) == set(cell.truth().poses) == set(scene["sizes_m"])
