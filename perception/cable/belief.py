@@ -11,15 +11,8 @@ from collections.abc import Iterable, Mapping, Sequence
 
 from perception.cable.outcomes import MOST_COMBINATIONS, Outcomes, outcomes
 from perception.cable.topology.names import UNKNOT, UNKNOWN
-from perception.cable.types import Crossing, KnotBelief, Reading, Trace, TraceEnd
+from perception.cable.types import COMPLETENESS, Crossing, KnotBelief, Reading, Trace, TraceEnd
 
-# How much a trace that ends like this can tell about the whole cable.
-COMPLETENESS = {
-    TraceEnd.ENDPOINT: 1.0,
-    TraceEnd.EDGE: 0.6,
-    TraceEnd.LOST: 0.4,
-    TraceEnd.RETRACE: 0.2,
-}
 NOTHING_KNOWN = 0.5
 Chances = Mapping[str, float]
 FEWEST_COMBINATIONS = 8

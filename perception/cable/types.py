@@ -21,6 +21,15 @@ class TraceEnd(StrEnum):
     LOST = "lost"
 
 
+# How much a trace that ends like this can tell about the whole cable.
+COMPLETENESS = {
+    TraceEnd.ENDPOINT: 1.0,
+    TraceEnd.EDGE: 0.6,
+    TraceEnd.LOST: 0.4,
+    TraceEnd.RETRACE: 0.2,
+}
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Endpoint:
     """One end of a cable.

@@ -5,9 +5,8 @@ from typing import Annotated
 from executive.core.outcome import failure, success
 from executive.core.skill import In, Port, Skill, SkillRun
 from executive.core.work import Worker
-from perception.cable.belief import COMPLETENESS
 from perception.cable.interfaces import CableVision
-from perception.cable.types import Endpoint, Trace, TraceStart
+from perception.cable.types import COMPLETENESS, Endpoint, Trace, TraceStart
 from perception.camera import CameraFrame
 from skills.cable.find_start_points import start_at
 from skills.cable.over_edge import leaving
