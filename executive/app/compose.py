@@ -21,6 +21,7 @@ from executive.engine.language.document import CellDocument
 from perception.cable.interfaces import CableVision
 
 if TYPE_CHECKING:
+    from perception.shelf.detections import ShelfDetector
     from simulation.shelf.cell import KinematicShelfCell
     from simulation.shelf_cell.cell import ShelfCell
 
@@ -139,10 +140,13 @@ def _search_services(
     world: "ShelfCell | KinematicShelfCell", document: CellDocument, seed: int
 ) -> Mapping[str, object]:
     """Return what skills of a search use on top of a shelf cell's devices."""
-    from executive.app.shelf_services import shelf_services
+    from executive.app.shelf_services import product_reader, shelf_services
     from perception.fresh_camera import FreshCamera
 
-    told = world.oracle_detector if world.settings.detector == "oracle" else None
+    kind = world.settings.detector
+    told: ShelfDetector | None = world.oracle_detector if kind == "oracle" else None
+    if kind in ("product", "looks"):
+        told = product_reader(world.stock.domain, text=kind == "product")
     return {
         **shelf_services(
             world.stock, world.tool.shape, world.search_camera, told, world.settings.affinity

@@ -40,6 +40,25 @@ def shelf_services(
     }
 
 
+def product_reader(domain: str, *, text: bool) -> ShelfDetector:
+    """Return the detector of labelled products of a domain.
+
+    Args:
+        domain: The domain.
+        text: Whether it reads; else it goes by looks alone.
+
+    Raises:
+        InputError: Nothing has been learned of the domain's looks, or nothing here reads text.
+    """
+    from perception.shelf.detection.products import product_detector
+    from perception.shelf.detection.reading import RapidReader
+    from perception.shelf.detection.wording import Wording
+    from simulation.shelf.taxonomy import shipped_domain
+
+    wordings = [Wording(thing.name, thing.brand) for thing in shipped_domain(domain).objects]
+    return product_detector(domain, wordings, RapidReader() if text else None)
+
+
 def shelf_affinity(stock: Stock, kind: AffinityKind) -> AffinityMatrix:
     """Return affinities of a stock.
 

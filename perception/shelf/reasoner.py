@@ -10,6 +10,7 @@ from perception.rgbd import RgbdFrame
 from perception.shelf.affinity import AffinityMatrix
 from perception.shelf.beliefs import OUT_OF_VIEW, SeenObject, ShelfBelief
 from perception.shelf.casting import BoxCaster
+from perception.shelf.coarsening import coarser, coarser_camera
 from perception.shelf.detections import Detections
 from perception.shelf.drawing import drawn_belief
 from perception.shelf.hidden_poses import HiddenPoses
@@ -70,7 +71,8 @@ class SearchReasoner:
             reach: What the tool needs.
             camera: The one at the viewpoint from which the search looks between moves.
         """
-        self._stock, self._affinity, self._reach, self._camera = stock, affinity, reach, camera
+        self._stock, self._affinity, self._reach = stock, affinity, reach
+        self._camera = coarser_camera(camera)
         self._casters: OrderedDict[bytes, BoxCaster] = OrderedDict()
         self._poses: OrderedDict[tuple[bytes, str], HiddenPoses] = OrderedDict()
 
@@ -112,6 +114,7 @@ class SearchReasoner:
 
     def see(self, belief: ShelfBelief, frame: RgbdFrame, detections: Detections) -> ShelfBelief:
         """See `ShelfReasoning`."""
+        frame, detections = coarser(frame, detections)
         caster = self._caster(frame.camera)
         numbers = tuple(f"{number}" for number in range(detections.count))
         view = ShelfView(frame.depth_m, detections.segments, numbers, frame.camera)

@@ -113,8 +113,7 @@ class KinematicShelfCell:
             self._contents, viewpoint_cameras(shelf, self._front), tool, chances[1]
         )
         noise = SensorNoise(camera.depth_noise_m, camera.lost_share, camera.colour_noise)
-        colours = {product.name: product.colour for product in self.stock.products}
-        self._picturer = ShelfPicturer(shelf, colours, noise, chances[2])
+        self._picturer = self._taking_pictures(noise, chances[2])
         self.camera = ShelfCamera(self)
         self.clock = SimClock(self)
         self.steps = 0
@@ -125,6 +124,14 @@ class KinematicShelfCell:
             "tool": self.tool,
             "stock": self.stock,
         }
+
+    def _taking_pictures(self, noise: SensorNoise, rng: np.random.Generator) -> ShelfPicturer:
+        if self.settings.labelled:
+            from simulation.shelf.labelled_picturing import LabelledPicturer
+
+            return LabelledPicturer(shipped_domain(self.stock.domain), self._scene, noise, rng)
+        colours = {product.name: product.colour for product in self.stock.products}
+        return ShelfPicturer(self._scene.shelf, colours, noise, rng)
 
     @property
     def step_s(self) -> float:

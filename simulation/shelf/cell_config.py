@@ -2,7 +2,10 @@
 
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+
+# Of narrower images labels cannot be read.
+LEGIBLE_PX = 320
 
 Share = Annotated[float, Field(ge=0.0, le=1.0)]
 
@@ -52,12 +55,28 @@ class ShelfCellConfig(_Document):
         tool: The tool.
         camera: The camera.
         detector: `colour` reads products by the colours of their boxes; `oracle` is told by the
-            world what each pixel shows, for experiments with nothing to detect.
+            world what each pixel shows, for experiments with nothing to detect; with `product` and
+            `looks` boxes carry labels, and the detector of products goes by looks and text, or by
+            looks alone, in images of at least 320 px.
         affinity: `stored` for the matrix that ships for the domain, `even` for none, `taxonomy`
             for the oracle that the scenes are made from.
     """
 
     tool: ToolConfig = ToolConfig()
     camera: CameraConfig = CameraConfig()
-    detector: Literal["colour", "oracle"] = "colour"
+    detector: Literal["colour", "oracle", "product", "looks"] = "colour"
     affinity: Literal["stored", "even", "taxonomy"] = "stored"
+
+    @property
+    def labelled(self) -> bool:
+        """Whether boxes carry labels."""
+        return self.detector in ("product", "looks")
+
+    @model_validator(mode="after")
+    def _legible(self) -> "ShelfCellConfig":
+        if self.labelled and self.camera.width_px < LEGIBLE_PX:
+            raise ValueError(
+                f"camera.width_px: got {self.camera.width_px}; expected at least {LEGIBLE_PX} "
+                f"with the detector {self.detector!r}; try camera.width_px=480"
+            )
+        return self

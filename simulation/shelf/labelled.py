@@ -56,7 +56,7 @@ class Picture:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class _Glare:
+class Glare:
     """A bright ellipse on a front: its middle and radii as shares of the front, and its angle."""
 
     x: float
@@ -76,6 +76,7 @@ class LabelledShelf:
         packages: Sequence[Package],
         looks: Looks,
         rng: np.random.Generator,
+        glares: Sequence[Glare | None] | None = None,
     ) -> None:
         """Set it up; glare is drawn here, since lamps do not move with the camera.
 
@@ -85,12 +86,11 @@ class LabelledShelf:
             packages: How they look.
             looks: What makes pictures hard.
             rng: Source of chance.
+            glares: Glare on each front; None to draw it.
         """
         self._shelf, self._boxes, self._packages = shelf, tuple(boxes), tuple(packages)
         self._looks, self._rng = looks, rng
-        self._glares = tuple(
-            _draw_glare(rng) if rng.random() < looks.glare else None for _ in boxes
-        )
+        self._glares = tuple([draw_glare(looks, rng) for _ in boxes] if glares is None else glares)
 
     def photograph(self, camera: CameraModel, viewpoint: str = "") -> Picture:
         """Take a picture."""
@@ -226,8 +226,11 @@ def _trimmed(camera: CameraModel, tallest_m: float) -> CameraModel:
     )
 
 
-def _draw_glare(rng: np.random.Generator) -> _Glare:
-    return _Glare(
+def draw_glare(looks: Looks, rng: np.random.Generator) -> Glare | None:
+    """Draw the glare on a front; None for none."""
+    if rng.random() >= looks.glare:
+        return None
+    return Glare(
         rng.uniform(0.2, 0.8),
         rng.uniform(0.15, 0.75),
         rng.uniform(0.25, 0.6),
@@ -236,7 +239,7 @@ def _draw_glare(rng: np.random.Generator) -> _Glare:
     )
 
 
-def _glare_image(glare: _Glare, size_px: tuple[int, int]) -> Floats:
+def _glare_image(glare: Glare, size_px: tuple[int, int]) -> Floats:
     """Return how white a front is, shape (height, width), in [0, 1]."""
     x, y = np.meshgrid(np.arange(size_px[0]) / size_px[0], np.arange(size_px[1]) / size_px[1])
     along = (x - glare.x) * np.cos(glare.angle_rad) + (y - glare.y) * np.sin(glare.angle_rad)
