@@ -93,9 +93,12 @@ class Pull:
 
     def cost(self, ends: Ends) -> float:
         """Return how bad it is to leave the cable as it is predicted, in crossings."""
+        return tangle_cost(self.predicted(ends)) + self.left_cost(ends)
+
+    def left_cost(self, ends: Ends) -> float:
+        """Return how bad it is that this much of the tail is left, in crossings."""
         left_m = self.left_m(ends)
-        left = TAIL_COST * left_m + (LEFT_COST if left_m > 0.0 else 0.0)
-        return tangle_cost(self.predicted(ends)) + left
+        return TAIL_COST * left_m + (LEFT_COST if left_m > 0.0 else 0.0)
 
 
 def tangle_cost(line_m: Floats) -> float:
@@ -155,6 +158,12 @@ def best_places(pull: Pull, left_holds_cage: bool, count: int) -> Sequence[Ends]
     if pull.pinch_m <= pull.cage_m:
         return []
     ends = list(places(left_holds_cage))
-    order = np.argsort([pull.cost(pair) for pair in ends], kind="stable")
-    best = [ends[k] for k in order]
+    least = np.array([pull.left_cost(pair) for pair in ends])
+    costs = dict[int, float]()
+    for k in np.argsort(least, kind="stable").tolist():
+        # Crossings only add to what is left of the tail: no later place can be among the best.
+        if len(costs) >= count and least[k] > sorted(costs.values())[count - 1]:
+            break
+        costs[k] = pull.cost(ends[k])
+    best = [ends[k] for k in sorted(costs, key=lambda k: (costs[k], k))]
     return [pair for pair in best if pull.slides(pair) == pull.slides(best[0])][:count]
