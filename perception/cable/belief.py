@@ -11,7 +11,7 @@ from collections.abc import Iterable, Mapping, Sequence
 
 from perception.cable.outcomes import MOST_COMBINATIONS, Outcomes, outcomes
 from perception.cable.topology.names import UNKNOT, UNKNOWN
-from perception.cable.types import COMPLETENESS, Crossing, KnotBelief, Reading, Trace, TraceEnd
+from perception.cable.types import COMPLETENESS, Crossing, KnotBelief, Reading, Trace
 
 NOTHING_KNOWN = 0.5
 Chances = Mapping[str, float]
