@@ -94,6 +94,7 @@ def open_cell(document: CellDocument, scenario: Mapping[str, object], seed: int)
         "table_cell": _open_table_cell,
         "shelf_cell": _open_shelf_cell,
         "shelf_kinematic": _open_kinematic_shelf,
+        "socket_arms": _open_socket_cell,
         "dry": _open_dry_cell,
     }
     if document.world not in worlds:
@@ -118,6 +119,19 @@ def _open_table_cell(document: CellDocument, scenario: Mapping[str, object], see
         **workers(document.work),
     }
     return _RestorableEquippedCell(world, services)
+
+
+def _open_socket_cell(document: CellDocument, scenario: Mapping[str, object], seed: int) -> Cell:
+    from robots.dual_arm import PlannedDualArm
+    from simulation.loopback.cell import SocketCell
+
+    world = SocketCell(document.config, scenario)
+    services = {
+        "arms": PlannedDualArm(world.driver, seed=seed),
+        "rng": np.random.default_rng(seed),
+        **workers(document.work),
+    }
+    return _EquippedCell(world, services)
 
 
 def _open_shelf_cell(document: CellDocument, scenario: Mapping[str, object], seed: int) -> Cell:

@@ -14,8 +14,8 @@ WORLDS = {
     "shelf_cell": examine_arm_at_shelf,
     "shelf_kinematic": examine_bare_shelf,
 }
-# A world without devices: there is nothing to reach.
-EMPTY = "dry"
+# Worlds in which nothing stands around: there is nothing to reach.
+EMPTY = ("dry", "socket_arms")
 
 
 def examine(cell: str, picture: Path | None, fine: bool) -> bool:
@@ -32,8 +32,8 @@ def examine(cell: str, picture: Path | None, fine: bool) -> bool:
     from executive.app.missions import load_cell
 
     document, _ = load_cell(cell)
-    if document.world == EMPTY:
-        results().print(Text(f"{document.name}: has no devices; nothing to reach"))
+    if document.world in EMPTY:
+        results().print(Text(f"{document.name}: has no table and no shelf; nothing to reach"))
         return True
     if document.world not in WORLDS:
         raise InputError(
