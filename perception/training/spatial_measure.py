@@ -29,8 +29,8 @@ def measured(folder: Path, batches: int) -> dict[str, float]:
     )
     told = torch.cat([network(inputs) for inputs, _ in looks])
     alike = likeness(told, torch.cat([roots for _, roots in looks]))
-    inputs = looks[0][0][:4].contiguous()
-    golden = {"inputs": inputs, "answer": told[:4].contiguous()}
+    inputs = looks[0][0][:1].contiguous()
+    golden = {"inputs": inputs, "answer": told[:1].contiguous()}
     save_file(golden, folder / "golden.safetensors")
     return {
         "measure_seed": MEASURE_SEED,

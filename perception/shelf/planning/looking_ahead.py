@@ -29,6 +29,8 @@ REST = 0.02
 HASTE_1_M = 1e-3
 # Partings are thought of for so many of the likeliest poses, and so many of them weighed.
 PARTED, WEIGHED = 40, 80
+# A plan that makes no more moves for a find needs no parting, which is of two moves or more.
+EASY = 2.0
 # What shows less of the target's probability shows nothing.
 LEAST_SHOWN = 1e-3
 # So many children of a branch compete for each place in the beam.
@@ -175,7 +177,10 @@ class _Search:
         self._weights = weights[kept] / weights[kept].sum()
 
     def best(self) -> Plan | None:
-        ahead, parting = self._by_beam(), self._by_parting()
+        ahead = self._by_beam()
+        if ahead is not None and ahead.toil <= EASY:
+            return _plan(ahead)
+        parting = self._by_parting()
         if ahead is None or parting is None:
             return _plan(ahead or parting)
         return _plan(min(ahead, parting, key=lambda branch: branch.toil))
