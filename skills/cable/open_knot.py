@@ -18,8 +18,9 @@ from skills.cable.grasping import grasp_goal
 LEAST_M = 0.12
 # Outwards by so much, or less where an arm cannot make it.
 WAYS_M = (0.12, 0.08, 0.05)
-# Room for fingers counts so much [1/px] beside being far out [1/px].
-ROOM, OUTSIDE = 0.1, 0.05
+# Room for fingers counts so much [1/px], being far out [1/px], and leading towards the middle of
+# the table, which a knot far from it needs [1/m].
+ROOM, OUTSIDE, INWARDS = 0.1, 0.05, 20.0
 
 
 class OpenKnot(CarrySkill):
@@ -51,21 +52,30 @@ class OpenKnot(CarrySkill):
         if not sites:
             return failure("knot.tight", "the knot has no place to hold it at")
         middle_px = np.mean([site.point_px for site in sites], axis=0)
-        order = sorted(sites, key=lambda site: -_openness(site, middle_px))
-        goals = [grasp_goal(frame, site.point_px, site.direction) for site in order]
         middle_m = frame.camera.on_plane(middle_px)[0]
+        values = [_openness(frame, site, middle_px, middle_m) for site in sites]
+        order = [sites[k] for k in np.argsort([-value for value in values], kind="stable")]
+        goals = [grasp_goal(frame, site.point_px, site.direction) for site in order]
         return (yield from self.carry(goals, lambda goal: ways_outwards(goal, middle_m)))
 
 
 def ways_outwards(goal: TcpGoal, middle_m: Floats) -> list[Floats]:
     """Return level displacements away from the middle of a knot, the longest first."""
-    out_m = (goal.position_m - middle_m) * [1.0, 1.0, 0.0]
-    out = out_m / max(float(np.linalg.norm(out_m)), 1e-9)
+    out = _outwards(goal.position_m, middle_m)
     return [way_m * out for way_m in WAYS_M]
 
 
-def _openness(site: GraspSite, middle_px: Points) -> float:
-    return ROOM * site.room_px + OUTSIDE * float(np.linalg.norm(site.point_px - middle_px))
+def _outwards(place_m: Floats, middle_m: Floats) -> Floats:
+    """Return the level unit vector from the middle of a knot to a place on it."""
+    out_m: Floats = (place_m - middle_m) * [1.0, 1.0, 0.0]
+    return out_m / max(float(np.linalg.norm(out_m)), 1e-9)
+
+
+def _openness(frame: CameraFrame, site: GraspSite, middle_px: Points, middle_m: Floats) -> float:
+    """Return how good it is to draw a knot out at a place."""
+    out = _outwards(frame.camera.on_plane(site.point_px)[0], middle_m)
+    outside_px = float(np.linalg.norm(site.point_px - middle_px))
+    return ROOM * site.room_px + OUTSIDE * outside_px - INWARDS * float(out @ middle_m)
 
 
 def _length_m(frame: CameraFrame, trace: Trace, knot: Knot) -> float:

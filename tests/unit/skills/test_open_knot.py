@@ -45,3 +45,16 @@ def test_ways_past_other_cable_come_after_free_ones():
     ordered = free_first([straight, aside], np.array([0.4, 0.0]), line_m)
     assert ordered[0] is aside
     assert free_first([straight, aside], np.array([0.4, 0.0]), line_m[-20:])[0] is straight
+
+
+def test_a_knot_far_from_the_middle_is_drawn_towards_it():
+    trace, _, knot = overhand()
+    for aside_px in (-260.0, 260.0):
+        arms = ArrivingArms()
+        aside = replace(trace, points_px=trace.points_px + np.array([aside_px, 0.0]))
+        finished(
+            OpenKnot(arms, InlineWorker()), {"frame": frame(), "trace": aside, "knots": (knot,)}
+        )
+        moves = [entry[1] for entry in arms.log if entry[0] == "move"]
+        arm = next(entry[1] for entry in arms.log if entry[0] == "grip")
+        assert abs(moves[3][arm][0]) < abs(moves[2][arm][0])
