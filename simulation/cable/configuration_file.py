@@ -67,7 +67,9 @@ def configurations_from_files(
     parameters = parameters or RodParameters()
     lines_m = [_line(path, parameters) for path in paths]
     for (path, one_m), (other, other_m) in combinations(zip(paths, lines_m, strict=True), 2):
-        _check_apart(f"{path}: nodes_m: runs through that of {other}", (one_m, other_m), parameters)
+        _check_apart(
+            f"{path}: nodes_m: runs through that of {other} at", (one_m, other_m), parameters
+        )
     return settle_all(lines_m, parameters)
 
 
@@ -76,7 +78,7 @@ def _line(path: Path, parameters: RodParameters) -> Floats:
     _check_points(path, points_m, parameters)
     nodes_m = smooth(points_m, parameters.node_spacing_m)
     nodes_m[:, 2] = np.maximum(nodes_m[:, 2], parameters.radius_m)
-    _check_apart(f"{path}: nodes_m: runs through itself", (nodes_m,), parameters)
+    _check_apart(f"{path}: nodes_m: runs through itself at", (nodes_m,), parameters)
     return nodes_m
 
 
@@ -131,7 +133,7 @@ def _check_apart(where: str, lines_m: Sequence[Floats], parameters: RodParameter
         gap_m = abs(first[2] - second[2])
         if gap_m < limit_m:
             raise InputError(
-                f"{where} at ({first[0]:.3f}, {first[1]:.3f}); got "
+                f"{where} ({first[0]:.3f}, {first[1]:.3f}); got "
                 f"strands {1e3 * gap_m:.1f} mm apart in height; expected at least "
                 f"{1e3 * limit_m:.1f} mm; try: raise the upper strand's z at crossings"
             )

@@ -11,7 +11,7 @@ from meshcat.commands import Delete
 
 from robots.descriptions.yumi import yumi
 from robots.placement import table_scene
-from robots.viewer import SceneFrame, Stage, write_html
+from robots.viewer import LiveViewer, SceneFrame, Stage, write_html
 from robots.viewer.overlays import (
     Dots,
     Screen,
@@ -90,6 +90,24 @@ def test_a_replay_holds_all_cables(tmp_path):
     row = np.frombuffer(base64.b64decode(recording["frames"]), dtype="<i2")
     points_m = row[7 * len(recording["links"]) :].reshape(-1, 3) * recording["metre"]
     assert points_m == pytest.approx(np.vstack([CABLE_M, short_m]), abs=1e-4)
+
+
+def test_a_live_view_draws_overlays_and_cables_and_takes_overlays_away():
+    viewer = LiveViewer(Stage(yumi(), table_scene()), min_interval_s=0.0)
+    lines = path_lines(WAY_M, (1, 1, 1))
+    try:
+        for overlays in ({"plan": lines, "target": Dots(WAY_M, np.eye(3), 0.01)}, {"plan": lines}):
+            viewer.show(
+                SceneFrame(0.0, {}, CABLE_M, 0.003, None, None, "", {}, (CABLE_M,), overlays)
+            )
+        viewer._socket.send(b"get_scene")
+        page = viewer._socket.recv().decode()
+    finally:
+        viewer.close()
+    texts = re.findall(r"octet-binary;base64,([^\"]+)", page)
+    paths = {umsgpack.unpackb(base64.b64decode(text))["path"] for text in texts}
+    assert {"/cable", "/cable_1", "/overlays/plan"} <= paths
+    assert "/overlays/target" not in paths
 
 
 def recorded(page):
