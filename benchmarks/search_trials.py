@@ -145,7 +145,10 @@ class WaySearcher:
         elif isinstance(move, Place):
             if result.failure is MoveFailure.NO_PLACE:
                 self.contacts.place_taken(box.at(move.x_m, move.y_m))
-        elif result.failure is MoveFailure.NO_ROOM or result.short_m > SHORT_M:
+            elif result.failure is not None:
+                # What the cup does not take hold of is not asked of it again and again.
+                self.contacts.way_blocked(box)
+        elif result.failure is not None or result.short_m > SHORT_M:
             self.contacts.push_stopped(box.at(box.x_m + sign * result.moved_m, box.y_m), sign)
         return result
 
