@@ -32,7 +32,7 @@ from perception.models.store import FOLDER
 from perception.training.calibration import expected_calibration_error, selective_error
 
 CLASSIFIERS: dict[str, Callable[[], CrossingClassifier]] = {
-    "": lambda: LearnedClassifier(FOLDER / "crossing_v3"),
+    "": lambda: LearnedClassifier(FOLDER / "crossing_v4"),
     "_edges": EdgeClassifier,
     "_continuity": ContinuityClassifier,
     "_thesis": lambda: ThesisClassifier(FOLDER / "thesis_crossing_v1"),

@@ -14,6 +14,9 @@ from perception.models.frames import Crop, Floats, ScaledImage, scale_image
 # A cable is this many units wide; a ribbon has one place a unit, along and across.
 WIDTH = 8.0
 ALONG, ACROSS = 65, 25
+# Channels of a ribbon.
+GREY, DISTANCE, ON_CABLE = range(3)
+CHANNELS = 3
 # Paths go on beyond a ribbon's ends, for smoothing.
 MARGIN = 8
 REACH = float(ALONG // 2 + MARGIN)
@@ -21,6 +24,8 @@ SMOOTHING = 2.4
 # Distances to the other strand are told apart up to here.
 FARTHEST = 1.5 * WIDTH
 CORE, BESIDE = 0.3 * WIDTH, 0.8 * WIDTH
+# Grey values that differ less are noise of the sensor.
+LEAST_DEVIATION = 2.0
 
 
 def scale_for_ribbons(image: GreyImage, width_px: float) -> ScaledImage:
@@ -29,7 +34,7 @@ def scale_for_ribbons(image: GreyImage, width_px: float) -> ScaledImage:
 
 
 def make_ribbons(scaled: ScaledImage, paths: Floats) -> Crop:
-    """Return grey and distance to the other strand, along both strands of each crossing.
+    """Return grey values and distance to the other strand, along both strands of each crossing.
 
     Args:
         scaled: From `scale_for_ribbons`.
@@ -37,8 +42,9 @@ def make_ribbons(scaled: ScaledImage, paths: Floats) -> Crop:
             shape (N, 2, K, 2).
 
     Returns:
-        Ribbons, shape (N, 2, 2, ALONG, ACROSS). Grey values have mean 0 and deviation 1 over both
-        ribbons of a crossing, cables on the bright side.
+        Ribbons, shape (N, 2, CHANNELS, ALONG, ACROSS): grey, distance, and grey as the cables
+        have it. Grey values have mean 0 and deviation 1 over both ribbons of a crossing, cables
+        on the bright side; the last channel has them over the cables alone.
     """
     smooth = gaussian_filter1d(paths, SMOOTHING, axis=2, mode="nearest")[:, :, MARGIN:-MARGIN]
     along = np.gradient(smooth, axis=2)
@@ -46,10 +52,12 @@ def make_ribbons(scaled: ScaledImage, paths: Floats) -> Crop:
     across = np.stack([-along[..., 1], along[..., 0]], axis=-1)
     aside = np.linspace(-0.5, 0.5, ACROSS) * (ACROSS - 1)
     places = smooth[..., None, :] + aside[:, None] * across[..., None, :]
-    ribbons = np.empty((len(paths), 2, 2, ALONG, ACROSS), np.float32)
+    ribbons = np.empty((len(paths), 2, CHANNELS, ALONG, ACROSS), np.float32)
     distances = _distances(places, smooth[:, ::-1], along[:, ::-1])
-    ribbons[:, :, 0] = _normalised(_grey(scaled, places), distances, aside)
-    ribbons[:, :, 1] = distances / FARTHEST
+    ribbons[:, :, GREY], ribbons[:, :, ON_CABLE] = _normalised(
+        _grey(scaled, places), distances, aside
+    )
+    ribbons[:, :, DISTANCE] = distances / FARTHEST
     return ribbons
 
 
@@ -97,17 +105,27 @@ def _doubled(values: Crop) -> Crop:
     return fine
 
 
-def _normalised(grey: Crop, distances: Crop, aside: Floats) -> Crop:
-    """Return grey values of mean 0 and deviation 1 a crossing, cables on the bright side."""
+def _normalised(grey: Crop, distances: Crop, aside: Floats) -> tuple[Crop, Crop]:
+    """Return grey values as all of a crossing and as its cables have them.
+
+    Cables are on the bright side of both. What tells strands apart is often a few grey values on
+    a cable that differs from the table by a hundred; the second one keeps those.
+    """
     own, other = np.abs(aside), np.abs(distances)
     on_cable = ((own < CORE) | (other < CORE)).astype(np.float32)
     on_table = ((own > BESIDE) & (other > BESIDE)).astype(np.float32)
-    axes = (1, 2, 3)
-    rise = _mean(grey, on_cable) - _mean(grey, on_table)
-    gain = np.where(rise < 0.0, -1.0, 1.0) / np.maximum(grey.std(axis=axes), 2.0)
-    centred = grey - grey.mean(axis=axes, keepdims=True)
-    normalised: Crop = (centred * gain[:, None, None, None]).clip(-4.0, 4.0)
-    return normalised
+    sign = np.where(_mean(grey, on_cable) < _mean(grey, on_table), -1.0, 1.0)
+    everywhere = np.ones_like(on_cable)
+    return _standard(grey, everywhere, sign, 4.0), _standard(grey, on_cable, sign, 3.0)
+
+
+def _standard(grey: Crop, weights: Crop, sign: Crop, most: float) -> Crop:
+    """Return values of mean 0 and deviation 1 where weights are, at most `most`, shape as grey."""
+    centred = grey - _mean(grey, weights)[:, None, None, None]
+    deviation = np.sqrt(_mean(centred**2, weights))
+    gain = sign / np.maximum(deviation, LEAST_DEVIATION)
+    standard: Crop = (centred * gain[:, None, None, None]).clip(-most, most)
+    return standard
 
 
 def _mean(grey: Crop, weights: Crop) -> Crop:

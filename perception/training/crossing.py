@@ -11,7 +11,13 @@ from torch.nn.functional import binary_cross_entropy_with_logits, softplus
 
 from perception.cable.classifiers.passes import StrandPass, path_through
 from perception.camera import GreyImage
-from perception.models.crossing_ribbon import REACH, make_ribbons, scale_for_ribbons
+from perception.models.crossing_ribbon import (
+    CHANNELS,
+    DISTANCE,
+    REACH,
+    make_ribbons,
+    scale_for_ribbons,
+)
 from perception.models.crossing_ribbon_net import CrossingRibbonNet
 from perception.models.frames import Crop
 from perception.training.command import main
@@ -39,10 +45,10 @@ class CrossingTask:
     """
 
     name = "crossing_ribbons"
-    widths: tuple[int, ...] = (16, 32, 64, 96)
+    widths: tuple[int, ...] = (24, 48, 96, 128, 128)
     zoom: float = 1.0
 
-    def __init__(self, times: int = 3) -> None:
+    def __init__(self, times: int = 2) -> None:
         self._times = times
 
     def network(self) -> nn.Module:
@@ -102,7 +108,7 @@ def _scene_config(rng: np.random.Generator) -> SceneConfig:
 def scene_ribbons(
     rng: np.random.Generator, scene: Scene, found: Sequence[Meeting]
 ) -> Sequence[Crop]:
-    """Return the ribbons of meetings of a scene, shape (2, 2, ALONG, ACROSS) each."""
+    """Return the ribbons of meetings of a scene, shape (2, CHANNELS, ALONG, ACROSS) each."""
     if not found:
         return ()
     width_px = scene.width_px * float(np.exp(rng.normal(0.0, SCALE_ERROR)))
@@ -152,8 +158,9 @@ def _turned(ribbons: Tensor) -> Tensor:
     along, across, sign = (torch.rand(3, count, 2, 1, 1) < 0.5).unbind(0)
     ribbons = torch.where(along[..., None], ribbons.flip(3), ribbons)
     ribbons = torch.where(across[..., None], ribbons.flip(4), ribbons)
-    distance = torch.where(sign, -ribbons[:, :, 1], ribbons[:, :, 1])
-    return torch.stack([ribbons[:, :, 0], distance], dim=2)
+    sides = torch.ones(CHANNELS)
+    sides[DISTANCE] = -1.0
+    return torch.where(sign[..., None], ribbons * sides[:, None, None], ribbons)
 
 
 if __name__ == "__main__":

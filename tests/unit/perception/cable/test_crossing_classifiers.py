@@ -31,7 +31,7 @@ def classifier(request, tmp_path):
     """Return a classifier with random weights: what holds for all weights is what is tested."""
     torch.manual_seed(4)
     network, widths, make, name = {
-        "ribbons": (CrossingRibbonNet, (8, 8, 16, 16), LearnedClassifier, "crossing_ribbons"),
+        "ribbons": (CrossingRibbonNet, (8, 8, 16, 16, 16), LearnedClassifier, "crossing_ribbons"),
         "thesis": (ThesisCrossingNet, (8, 8, 16, 16), ThesisClassifier, "thesis_crossing"),
     }[request.param]
     safetensors.save_file(network(widths).state_dict(), tmp_path / "weights.safetensors")

@@ -6,7 +6,7 @@ torch = pytest.importorskip("torch")
 safetensors = pytest.importorskip("safetensors.torch")
 
 from executive.core.errors import InputError  # noqa: E402  # after the skip
-from perception.models.crossing_ribbon import ACROSS, ALONG  # noqa: E402
+from perception.models.crossing_ribbon import ACROSS, ALONG, CHANNELS  # noqa: E402
 from perception.models.crossing_ribbon_net import CrossingRibbonNet  # noqa: E402
 from perception.models.store import load_network  # noqa: E402
 from perception.models.tracer_math import cell_targets, step_logits  # noqa: E402
@@ -22,8 +22,8 @@ def _saved(folder, name, network):
 
 def test_exchanging_ribbons_changes_one_sign_and_nothing_else():
     torch.manual_seed(1)
-    network = CrossingRibbonNet(WIDTHS).eval()
-    ribbons = torch.randn(5, 2, 2, ALONG, ACROSS)
+    network = CrossingRibbonNet((*WIDTHS, 16)).eval()
+    ribbons = torch.randn(5, 2, CHANNELS, ALONG, ACROSS)
     exchanged = network(ribbons.flip(1)) * torch.tensor([-1.0, 1.0])
     assert torch.allclose(network(ribbons), exchanged, atol=1e-5)
     assert (network(ribbons)[:, 0].abs() > 1e-4).all()
@@ -42,7 +42,7 @@ def test_loading_folds_normalisation_without_changing_answers(tmp_path):
 
 
 def test_an_unknown_network_is_named(tmp_path):
-    _saved(tmp_path, "oracle", CrossingRibbonNet(WIDTHS))
+    _saved(tmp_path, "oracle", CrossingRibbonNet((*WIDTHS, 16)))
     with pytest.raises(InputError, match=r"'oracle'.*known: crossing_ribbons, .*tracer"):
         load_network(tmp_path)
 

@@ -99,8 +99,8 @@ def test_no_cable_no_trace():
 
 
 def test_the_classifier_knows_most_crossings_of_fresh_scenes():
-    assert read_config(FOLDER / "crossing_v3").network == "crossing_ribbons"
-    classifier = LearnedClassifier(FOLDER / "crossing_v3")
+    assert read_config(FOLDER / "crossing_v4").network == "crossing_ribbons"
+    classifier = LearnedClassifier(FOLDER / "crossing_v4")
     assert isinstance(classifier, CrossingClassifier)
     right = total = 0
     for seed in range(8):
