@@ -86,7 +86,9 @@ def test_halts_are_listed(cellwright):
 def test_trees_are_meant_where_no_file_is_named(cellwright, tmp_path, monkeypatch, command):
     monkeypatch.chdir(tmp_path)
     missing = cellwright(command)
-    assert str(missing.exception) == ("trees: no such file or folder; try the name of a YAML file, or of a mission")
+    assert str(missing.exception) == (
+        "trees: no such file or folder; try the name of a YAML file, or of a mission"
+    )
     (tmp_path / "trees").mkdir()
     assert str(cellwright(command).exception) == "no YAML files in trees"
     (tmp_path / "trees" / "t.yaml").write_text("format: 1\ntree: t\nroot: {set: {a: 1, b: a}}\n")
