@@ -57,3 +57,10 @@ def test_a_product_that_the_stock_does_not_have_ends_it_at_once(tmp_path):
     assert report.outcome == "failure"
     assert "order.unknown" in report.reason
     assert report.actions == ()
+
+
+def test_a_target_of_which_a_sliver_shows_is_uncovered_and_taken_out(tmp_path):
+    report = searched(tmp_path, 13, {"count": 15}).report
+    assert report.outcome == "success"
+    assert report.truth["retrieved"]
+    assert report.truth["wrong"] == []
