@@ -3,7 +3,6 @@
 import json
 import os
 import signal
-import subprocess
 import time
 from contextlib import suppress
 from pathlib import Path
@@ -14,10 +13,9 @@ from benchmarks.fault_missions import (
     BROKEN,
     REFUSED,
     call,
-    command,
-    environment,
     killed_when,
     readable_ticks,
+    started,
     write_campaign,
 )
 from benchmarks.fault_services import served, wait_until, write_served
@@ -96,13 +94,7 @@ def run_of_campaign_killed(folder: Path, rng: np.random.Generator) -> Answer:
     write_campaign(folder, "{parts: 200}")
     count = int(rng.integers(2, 6))
     killed: list[int] = []
-    with subprocess.Popen(
-        command(*_CAMPAIGN),
-        cwd=folder,
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.DEVNULL,
-        env=environment(),
-    ) as campaign:
+    with started(folder, *_CAMPAIGN) as campaign:
         while campaign.poll() is None:
             for run in _grandchildren(campaign.pid):
                 if run not in killed and len(killed) < count:
@@ -177,13 +169,7 @@ def _beside_a_service(folder: Path, *words: str) -> Answer:
 def second_campaign(folder: Path, _: np.random.Generator) -> Answer:
     """Go on with a campaign that is under way."""
     lock = folder / "out" / "campaign.lock"
-    with subprocess.Popen(
-        command(*_CAMPAIGN),
-        cwd=folder,
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.DEVNULL,
-        env=environment(),
-    ) as first:
+    with started(folder, *_CAMPAIGN) as first:
         while first.poll() is None and not (lock.exists() and lock.read_bytes()):
             time.sleep(0.01)
         second = call(folder, *_CAMPAIGN, "--resume")

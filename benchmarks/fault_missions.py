@@ -96,15 +96,20 @@ def environment() -> dict[str, str]:
     return {**os.environ, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
 
 
-def killed_when(folder: Path, words: Sequence[object], due: Callable[[], bool]) -> bool:
-    """Run Cellwright and kill it (`kill -9`) when it is due; return whether it still ran."""
-    with subprocess.Popen(
+def started(folder: Path, *words: object) -> subprocess.Popen[bytes]:
+    """Start Cellwright in a folder and return its process; what it prints is dropped."""
+    return subprocess.Popen(
         command(*words),
         cwd=folder,
         stdout=subprocess.DEVNULL,
         stderr=subprocess.DEVNULL,
         env=environment(),
-    ) as process:
+    )
+
+
+def killed_when(folder: Path, words: Sequence[object], due: Callable[[], bool]) -> bool:
+    """Run Cellwright and kill it (`kill -9`) when it is due; return whether it still ran."""
+    with started(folder, *words) as process:
         while process.poll() is None and not due():
             time.sleep(0.005)
         ran = process.poll() is None
