@@ -156,7 +156,7 @@ def test_all_is_trained_again_by_its_recipes(tmp_path, quick):
     made = tmp_path / "models" / "tracer_v7"
     assert {path.name for path in made.iterdir()} == {
         *("weights.safetensors", "config.json", "recipe.yaml"),
-        *("metrics.json", "card.md", "golden.safetensors"),
+        *("metrics.json", "card.md", "golden.safetensors", "weights.sha256"),
     }
     metrics = json.loads((made / "metrics.json").read_text())
     assert metrics["samples"] == 16 + 8

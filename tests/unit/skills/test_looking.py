@@ -111,19 +111,19 @@ def test_a_camera_that_stutters_is_waited_for_and_one_that_has_frozen_is_broken(
 
 
 class LostFromTheLeft:
-    """Loses the cable on the way from the end at x = 0, and follows it from the other one."""
+    """Loses the cable on the way from the end at x = 300, and follows it from the other one."""
 
     def __init__(self):
         self.asked = 0
 
     def trace(self, image, start_px, endpoints):
         self.asked += 1
-        lost = start_px[0, 0] == 0.0
+        lost = start_px[0, 0] == 300.0
         return Trace(start_px, TraceEnd.LOST if lost else TraceEnd.ENDPOINT, 0.9)
 
 
 def traced(vision, **more):
-    ends = tuple(Endpoint(np.array([x, 0.0]), np.array([1.0, 0.0]), 0.9) for x in (0.0, 500.0))
+    ends = tuple(Endpoint(np.array([x, 300.0]), np.array([1.0, 0.0]), 0.9) for x in (300.0, 700.0))
     skill = TraceCable(vision, InlineWorker())
     inputs = {"frame": frame(), "start": start_at(ends[0]), "endpoints": ends, **more}
     return finished(skill, inputs)[0].outputs["trace"]

@@ -20,7 +20,7 @@ def test_replay_shows_the_arm_and_every_box_where_it_is(tmp_path) -> None:
     follower = SceneFollower()
     for message in cell.drain_streams():
         if message.topic == "/scene":
-            follower.on_scene(message)
+            follower.on_stream(message)
     frame = follower.frame(0.0)
     truth = cell.truth()
     cell.close()
