@@ -176,6 +176,12 @@ def test_cable_that_leaves_the_view_is_pulled_in_by_who_reveals(policy):
     assert ("pull_in" in acts) == POLICIES[policy].reveals
 
 
+def test_cable_that_slides_back_each_time_is_worked_on_as_it_is():
+    sliding = replace(KNOTTED, end=TraceEnd.EDGE)
+    acts = flown(*[sliding] * 5, DONE, policy="default")[1]
+    assert acts == [*["pull_in"] * 3, "dilate_knot", "pull_in"]
+
+
 def test_sgtm2_ends_where_no_knot_is_in_sight_though_the_cable_leaves_the_view():
     result, acts, _ = flown(replace(DONE, end=TraceEnd.EDGE, knotted=0.0), policy="sgtm2")
     assert (result.claim.untangled, acts) == (True, [])
