@@ -361,6 +361,8 @@ def test_a_live_run_is_followed_commanded_and_seen_to_end(growing, path):
     async def look(app, pilot):
         await shows(app, pilot, "live")
         assert app.tick == 3
+        # The run can be commanded once it has told its state.
+        await shows(app, pilot, "Debug", line=None)
         await pilot.press("p")
         await shows(app, pilot, "paused")
         assert app._opened.recording.header.nodes[app.node].path == debugger._node
@@ -396,10 +398,10 @@ def test_a_run_that_nothing_runs_is_killed_and_takes_no_commands(growing):
     looking(growing, look, settle_first=False)
 
 
-async def shows(app, pilot, word):
-    """Wait until the top line shows a word."""
+async def shows(app, pilot, word, line=0):
+    """Wait until a line, or any for None, shows a word."""
     end_s = time.monotonic() + 10.0
-    while word not in screen_text(app).splitlines()[0]:
+    while word not in (screen_text(app) if line is None else screen_text(app).splitlines()[line]):
         assert time.monotonic() < end_s, screen_text(app)
         await pilot.pause(0.05)
 
