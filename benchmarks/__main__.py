@@ -2,12 +2,11 @@
 
 import argparse
 import importlib
-import sys
 from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
 
-from benchmarks.harness import Benchmark, document
+from benchmarks.harness import Benchmark, hand_over
 from benchmarks.report import write_page
 
 BENCHMARKS = {
@@ -68,12 +67,7 @@ def _run(name: str, quick: bool, seed: int, target: Path | None, words: Sequence
     rows = benchmark.run(quick, seed)
     if quick:
         print("quick run: these figures are not results")
-    for row in rows:
-        spread = f"[{row.low:.3g}, {row.high:.3g}]"
-        print(f"{row.name:36} {row.value:10.4g} {row.unit:4} n={row.n:<6} {spread:20} {row.goal}")
-    if target is not None:
-        target.write_text(document(name, seed, quick, rows), encoding="utf-8")
-        print(f"written: {target}", file=sys.stderr)
+    hand_over(name, seed, quick, rows, target)
 
 
 if __name__ == "__main__":

@@ -3,6 +3,7 @@
 import json
 import math
 import subprocess
+import sys
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -83,6 +84,16 @@ def percentile_95(name: str, samples: Sequence[float], unit: str, goal: str = ""
     at = [min(n - 1, max(0, round(0.95 * n + step))) for step in (-reach, 0.0, reach)]
     low, value, high = (ordered[i] for i in at)
     return Row(name, value, unit, n, low, high, goal)
+
+
+def hand_over(name: str, seed: int, quick: bool, rows: Sequence[Row], target: Path | None) -> None:
+    """Print the rows of one run, and write its result document where one is wanted."""
+    for row in rows:
+        spread = f"[{row.low:.3g}, {row.high:.3g}]"
+        print(f"{row.name:36} {row.value:10.4g} {row.unit:4} n={row.n:<6} {spread:20} {row.goal}")
+    if target is not None:
+        target.write_text(document(name, seed, quick, rows), encoding="utf-8")
+        print(f"written: {target}", file=sys.stderr)
 
 
 def document(name: str, seed: int, quick: bool, rows: Sequence[Row]) -> str:

@@ -5,10 +5,9 @@ Its recordings, which it has to keep, are scored here as those of `python -m ben
 """
 
 import argparse
-import sys
 from pathlib import Path
 
-from benchmarks.harness import document
+from benchmarks.harness import hand_over
 from benchmarks.untangle import rows
 from benchmarks.untangle_trial import Trial, Wanted, trial_of
 from executive.app.campaigns.folder import CampaignFolder
@@ -30,13 +29,8 @@ def main() -> None:
         trials = trials_of(chosen.folder)
     except InputError as error:
         parser.exit(2, f"{error}\n")
-    found = rows(trials)
-    for row in found:
-        print(f"{row.name:44} {row.value:10.4g} {row.unit:4} n={row.n:<6} {row.goal}")
-    if chosen.json is not None:
-        first = min(trial.wanted.seed for trial in trials)
-        chosen.json.write_text(document("untangle", first, False, found), encoding="utf-8")
-        print(f"written: {chosen.json}", file=sys.stderr)
+    first = min(trial.wanted.seed for trial in trials)
+    hand_over("untangle", first, False, rows(trials), chosen.json)
 
 
 def trials_of(folder: Path) -> list[Trial]:

@@ -14,6 +14,8 @@ WORLDS = {
     "shelf_cell": examine_arm_at_shelf,
     "shelf_kinematic": examine_bare_shelf,
 }
+# Places that are looked at lie so far apart.
+COARSE_M, FINE_M = 0.10, 0.05
 # Worlds in which nothing stands around: there is nothing to reach.
 EMPTY = ("dry", "socket_arms")
 
@@ -41,7 +43,7 @@ def examine(cell: str, picture: Path | None, fine: bool) -> bool:
             f"expected a cell of world {', '.join(WORLDS)}"
         )
     file = picture or Path("runs") / "doctor" / f"{document.name}.png"
-    works, warnings = WORLDS[document.world](document, file, fine)
+    works, warnings = WORLDS[document.world](document, file, FINE_M if fine else COARSE_M)
     for warning in warnings:
         results().print(Text(f"! {warning}", "yellow"), soft_wrap=True)
     results().print(Text(f"picture: {file}"), soft_wrap=True)

@@ -7,11 +7,9 @@ from rich.text import Text
 from executive.cli.console import chatter, results
 from executive.engine.language.document import CellDocument
 
-COARSE_M, FINE_M = 0.10, 0.05
-
 
 def examine_arm_at_shelf(
-    document: CellDocument, picture: Path, fine: bool
+    document: CellDocument, picture: Path, step_m: float
 ) -> tuple[bool, list[str]]:
     """Do so for an arm before a shelf; return whether that works, and warnings.
 
@@ -22,10 +20,12 @@ def examine_arm_at_shelf(
     from simulation.table_cell_config import read_settings
 
     settings = read_settings(ShelfCellConfig, document.config, document.name)
-    return _examine(document.name, settings.camera.width_px, picture, fine, with_arm=True)
+    return _examine(document.name, settings.camera.width_px, picture, step_m, with_arm=True)
 
 
-def examine_bare_shelf(document: CellDocument, picture: Path, fine: bool) -> tuple[bool, list[str]]:
+def examine_bare_shelf(
+    document: CellDocument, picture: Path, step_m: float
+) -> tuple[bool, list[str]]:
     """Do so for a tool that no arm carries; return whether that works, and warnings.
 
     Raises:
@@ -36,7 +36,7 @@ def examine_bare_shelf(document: CellDocument, picture: Path, fine: bool) -> tup
 
     settings = read_settings(ShelfCellConfig, document.config, document.name)
     works, warnings = _examine(
-        document.name, settings.camera.width_px, picture, fine, with_arm=False
+        document.name, settings.camera.width_px, picture, step_m, with_arm=False
     )
     if not settings.tool.suction:
         warnings.append("the tool has no cup: nothing can be taken out, only pushed aside")
@@ -44,7 +44,7 @@ def examine_bare_shelf(document: CellDocument, picture: Path, fine: bool) -> tup
 
 
 def _examine(
-    name: str, width_px: int, picture: Path, fine: bool, *, with_arm: bool
+    name: str, width_px: int, picture: Path, step_m: float, *, with_arm: bool
 ) -> tuple[bool, list[str]]:
     from perception.shelf.types import Shelf
     from robots.shelf_arm.layout import judge_shelf, shelf_grid, without_arm
@@ -53,10 +53,9 @@ def _examine(
     from simulation.shelf.cameras import front_camera, sees_floor, viewpoint_cameras
 
     inside = Shelf()
-    shelf, step_m = ShelfSize(inside.width_m, inside.depth_m, inside.height_m), COARSE_M
-    step_m = FINE_M if fine else COARSE_M
+    shelf = ShelfSize(inside.width_m, inside.depth_m, inside.height_m)
     cameras = viewpoint_cameras(inside, front_camera(inside, width_px))
-    viewpoints = {name: camera.T_world_camera for name, camera in cameras.items()}
+    viewpoints = {view: camera.T_world_camera for view, camera in cameras.items()}
     seen = sees_floor(cameras.values(), *shelf_grid(shelf, step_m))
     judge = judge_shelf if with_arm else without_arm
     with chatter().status(f"measuring what the tool reaches in {name}"):

@@ -7,10 +7,8 @@ from rich.text import Text
 from executive.cli.console import chatter, results
 from executive.engine.language.document import CellDocument
 
-COARSE_M, FINE_M = 0.10, 0.05
 
-
-def examine_table(document: CellDocument, picture: Path, fine: bool) -> tuple[bool, list[str]]:
+def examine_table(document: CellDocument, picture: Path, step_m: float) -> tuple[bool, list[str]]:
     """Measure, print and draw who reaches what; return whether that works, and warnings.
 
     Raises:
@@ -25,7 +23,7 @@ def examine_table(document: CellDocument, picture: Path, fine: bool) -> tuple[bo
     settings = read_settings(TableCellConfig, document.config, document.name)
     scene = planning_scene(settings.layout)
     with chatter().status(f"measuring who reaches what in {document.name}"):
-        report = judge_layout(scene, seen_rectangle(settings.camera), FINE_M if fine else COARSE_M)
+        report = judge_layout(scene, seen_rectangle(settings.camera), step_m)
     save_reach(report, scene.placement, f"{document.name}: who grasps where", picture)
     told = ", ".join(f"{who} {100 * share:.0f} %" for who, share in report.shares().items())
     console = results()

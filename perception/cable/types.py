@@ -21,6 +21,8 @@ class TraceEnd(StrEnum):
     LOST = "lost"
 
 
+# A trace that starts at an end has its second point so far into the cable.
+AHEAD_PX = 4.0
 # How much a trace that ends like this can tell about the whole cable.
 COMPLETENESS = {
     TraceEnd.ENDPOINT: 1.0,
@@ -56,6 +58,12 @@ class TraceStart:
 
     points_px: Points
     endpoint: Endpoint
+
+    @classmethod
+    def at(cls, endpoint: Endpoint) -> "TraceStart":
+        """Return an end and a point a little into the cable, which says which way to go."""
+        ahead_px = endpoint.position_px + AHEAD_PX * endpoint.direction
+        return cls(np.stack([endpoint.position_px, ahead_px]), endpoint)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

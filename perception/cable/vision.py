@@ -26,7 +26,16 @@ from perception.cable.parts import (
 from perception.cable.polyline import arc_lengths, resample
 from perception.cable.telling import telling_question
 from perception.cable.tracers.analytic import AnalyticTracer
-from perception.cable.types import CableScene, Crossing, Endpoint, Knot, Points, Reading, Trace
+from perception.cable.types import (
+    CableScene,
+    Crossing,
+    Endpoint,
+    Knot,
+    Points,
+    Reading,
+    Trace,
+    TraceStart,
+)
 from perception.camera import GreyImage
 
 # Tracers finish up to this far from an end.
@@ -35,8 +44,6 @@ REACHED_PX = 20.0
 THROUGH_PX = 4.0
 # A trace of which more than this share lies on another one follows the same cable.
 SAME_CABLE = 0.5
-# A second point this far into the cable tells a tracer which way to go from an end.
-AHEAD_PX = 4.0
 # Other ways to read a cable than the likeliest are weighed down to this belief, so many at most.
 LEAST_READING, MOST_READINGS = 0.02, 4
 
@@ -174,8 +181,7 @@ class GreyImageVision:
         for endpoint in endpoints:
             if any(_accounts_for(ways[0], endpoint) for ways in cables):
                 continue
-            ahead = endpoint.position_px + AHEAD_PX * endpoint.direction
-            ways = self._ways(image, np.stack([endpoint.position_px, ahead]), endpoints)
+            ways = self._ways(image, TraceStart.at(endpoint).points_px, endpoints)
             if ways:
                 cables.append(ways)
         return _distinct(cables)

@@ -49,9 +49,10 @@ class Detours:
         return None
 
     def _ways(self, start: Floats, end: Floats) -> Iterator[list[Floats]]:
-        for arm in self.arms if len(self.arms) > 1 else ():
+        several = self.arms if len(self.arms) > 1 else ()
+        for arm in several:
             yield [self._with(start, arm, end)]
-        for arm in self.arms if len(self.arms) > 1 else ():
+        for arm in several:
             aside = self._with(start, arm, self.rest)
             yield [aside, self._with(end, arm, self.rest)]
         yield [self.rest]

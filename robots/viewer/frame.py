@@ -1,6 +1,6 @@
 """One moment of a scene, as viewers take it."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -78,3 +78,13 @@ def thinned(points: Floats, count: int) -> Floats:
     if len(points) <= count:
         return points
     return points[np.linspace(0, len(points) - 1, count).round().astype(int)]
+
+
+def overlay_changes(
+    before: Mapping[str, Overlay], now: Mapping[str, Overlay]
+) -> Iterator[tuple[str, Overlay | None]]:
+    """Yield the overlays that are others than before, by name; None for one that has gone."""
+    for name in sorted(now.keys() | before.keys()):
+        overlay = now.get(name)
+        if overlay is not before.get(name):
+            yield name, overlay

@@ -14,7 +14,7 @@ import umsgpack
 
 from executive.core.errors import RecordingError
 from robots.interfaces import Floats
-from robots.viewer.frame import SceneFrame, thinned
+from robots.viewer.frame import SceneFrame, overlay_changes, thinned
 from robots.viewer.overlays import Overlay, draw_overlay
 from robots.viewer.shapes import TUBE_SIDES
 from robots.viewer.stage import (
@@ -174,11 +174,9 @@ def _overlays(
     changes: dict[str, list[tuple[float, str]]] = {}
     shown: Mapping[str, Overlay] = {}
     for frame, time_s in zip(frames, times_s, strict=True):
-        for name in sorted(frame.overlays.keys() | shown.keys()):
-            overlay = frame.overlays.get(name)
-            if overlay is not shown.get(name):
-                command = umsgpack.packb(draw_overlay(name, overlay).lower())
-                changes.setdefault(name, []).append((time_s, _text(command)))
+        for name, overlay in overlay_changes(shown, frame.overlays):
+            command = umsgpack.packb(draw_overlay(name, overlay).lower())
+            changes.setdefault(name, []).append((time_s, _text(command)))
         shown = frame.overlays
     return changes
 

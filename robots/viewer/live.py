@@ -13,7 +13,7 @@ import zmq
 
 from executive.core.errors import DeviceError
 from robots.interfaces import Floats
-from robots.viewer.frame import CameraCone, SceneFrame
+from robots.viewer.frame import CameraCone, SceneFrame, overlay_changes
 from robots.viewer.overlays import Overlay, draw_overlay
 from robots.viewer.stage import Stage, draw_box, draw_cable, draw_camera, draw_trace, move_link
 
@@ -83,10 +83,8 @@ class LiveViewer:
                 self._poses[name] = pose
         for number, cable_m in enumerate(frame.cables_m):
             self._send(draw_cable(cable_m, frame.cable_radius_m, number))
-        for name in frame.overlays.keys() | self._overlays.keys():
-            overlay = frame.overlays.get(name)
-            if overlay is not self._overlays.get(name):
-                self._send(draw_overlay(name, overlay))
+        for name, overlay in overlay_changes(self._overlays, frame.overlays):
+            self._send(draw_overlay(name, overlay))
         self._overlays = frame.overlays
         if frame.trace_m is not self._trace:
             self._send(draw_trace(frame))

@@ -18,7 +18,7 @@ from executive.core.errors import InputError, RecordingError
 from robots.descriptions.model import Box, Capsule, Link, RobotDescription
 from robots.interfaces import Floats
 from robots.placement import PlanningScene
-from robots.viewer.frame import CameraCone, SceneFrame
+from robots.viewer.frame import CameraCone, SceneFrame, overlay_changes
 from robots.viewer.overlays import Dots, Lines, Overlay, Screen
 
 TIMELINE = "cell"
@@ -115,10 +115,8 @@ class RerunFile:
         for number, cable_m in enumerate(frame.cables_m):
             path = f"world/cable_{number}" if number else "world/cable"
             self._line(path, [cable_m], frame.cable_radius_m, _CABLE)
-        for name in sorted(frame.overlays.keys() | self._overlays.keys()):
-            overlay = frame.overlays.get(name)
-            if overlay is not self._overlays.get(name):
-                self._overlay(f"world/overlays/{name}", overlay)
+        for name, overlay in overlay_changes(self._overlays, frame.overlays):
+            self._overlay(f"world/overlays/{name}", overlay)
         self._overlays = frame.overlays
         if frame.trace_m is not None and frame.trace_m is not self._trace:
             self._trace = frame.trace_m

@@ -2,17 +2,12 @@
 
 from typing import Annotated
 
-import numpy as np
-
 from executive.core.outcome import failure, success
 from executive.core.skill import In, Port, Skill, SkillRun
 from executive.core.work import Worker
 from perception.cable.interfaces import CableVision
-from perception.cable.types import Endpoint, Points, TraceStart
+from perception.cable.types import Endpoint, TraceStart
 from perception.camera import CameraFrame
-
-# A second point this far into the cable tells a tracer which way to go from an end.
-AHEAD_PX = 4.0
 
 
 class FindStartPoints(Skill):
@@ -44,13 +39,7 @@ class FindStartPoints(Skill):
             if points_px is not None:
                 return success(start=TraceStart(points_px, endpoint))
         if endpoints and not clear:
-            return success(start=start_at(endpoints[0]))
+            return success(start=TraceStart.at(endpoints[0]))
         return failure(
             "start.unclear", "no end has a clear piece of cable behind it", ends=len(endpoints)
         )
-
-
-def start_at(endpoint: Endpoint) -> TraceStart:
-    """Return an end and a point a little into the cable as the start of a trace."""
-    steps_px: Points = np.array([[0.0], [AHEAD_PX]])
-    return TraceStart(endpoint.position_px + steps_px * endpoint.direction, endpoint)

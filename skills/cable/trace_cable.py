@@ -8,7 +8,6 @@ from executive.core.work import Worker
 from perception.cable.interfaces import CableVision
 from perception.cable.types import COMPLETENESS, Endpoint, Trace, TraceStart
 from perception.camera import CameraFrame
-from skills.cable.find_start_points import start_at
 from skills.cable.over_edge import leaving
 
 # A trace that tells as much as this about the whole cable needs no other one beside it.
@@ -38,7 +37,7 @@ class TraceCable(Skill):
         other_ends: Annotated[bool, In("start at other ends where that tells more")] = False,
     ) -> SkillRun:
         """Trace, one start a tick."""
-        others = [start_at(end) for end in endpoints if end is not start.endpoint]
+        others = [TraceStart.at(end) for end in endpoints if end is not start.endpoint]
         best: Trace | None = None
         for each in (start, *(others if other_ends else ())):
             trace = yield from self._worker.run(

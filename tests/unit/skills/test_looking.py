@@ -4,11 +4,11 @@ from cell_fakes import finished, frame, overhand
 
 from executive.core.work import InlineWorker
 from perception.cable.orientation import reversed_crossings, reversed_trace
-from perception.cable.types import Endpoint, Knot, Trace, TraceEnd
+from perception.cable.types import Endpoint, Knot, Trace, TraceEnd, TraceStart
 from perception.fresh_camera import FrozenError
 from skills.cable.account_for_cable import AccountForCable, with_connectors
 from skills.cable.detect_endpoints import DetectEndpoints
-from skills.cable.find_start_points import FindStartPoints, start_at
+from skills.cable.find_start_points import FindStartPoints
 from skills.cable.observe_workspace import ObserveWorkspace
 from skills.cable.orient_trace import OrientTrace
 from skills.cable.state_claim import StateClaim
@@ -125,7 +125,7 @@ class LostFromTheLeft:
 def traced(vision, **more):
     ends = tuple(Endpoint(np.array([x, 300.0]), np.array([1.0, 0.0]), 0.9) for x in (300.0, 700.0))
     skill = TraceCable(vision, InlineWorker())
-    inputs = {"frame": frame(), "start": start_at(ends[0]), "endpoints": ends, **more}
+    inputs = {"frame": frame(), "start": TraceStart.at(ends[0]), "endpoints": ends, **more}
     return finished(skill, inputs)[0].outputs["trace"]
 
 
