@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter1d
 
-from perception.training.settled import settled_curve
+from perception.training.settled import hairpin_curve, settled_curve
 from perception.training.waypoints import SPACING, resample, through
 
 Points = NDArray[np.float64]
@@ -220,4 +220,5 @@ FAMILIES: dict[str, Callable[[np.random.Generator, float], Points]] = {
     "coil": coil_curve,
     "tight": tight_curve,
     "settled": settled_curve,
+    "hairpin": hairpin_curve,
 }

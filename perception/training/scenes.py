@@ -93,6 +93,7 @@ class SceneConfig:
         style: One of `perception.training.looks.STYLES`, or None for any.
         alike: Whether all cables look the same, or None for half of all scenes.
         leaving: Share of scenes that are moved aside, so that more strands leave the view.
+        hairpins: Share of cables that are settled ones, seen where they turn back tightly.
     """
 
     extent: float = 46.0
@@ -105,6 +106,7 @@ class SceneConfig:
     style: str | None = None
     alike: bool | None = None
     leaving: float = 0.15
+    hairpins: float = 0.0
 
 
 def make_scene(rng: np.random.Generator, config: SceneConfig | None = None) -> Scene:
@@ -191,6 +193,8 @@ def _lines(rng: np.random.Generator, config: SceneConfig) -> list[Floats]:
     left = MOST_NODES
     for _ in range(count):
         family = config.family or str(rng.choice(list(SHARES), p=list(SHARES.values())))
+        if config.hairpins > 0.0 and rng.random() < config.hairpins:
+            family = "hairpin"
         if lines and rng.random() < NEAR_ANOTHER:
             near = curves.NEAR[rng.choice(len(curves.NEAR), p=NEAR_SHARES)]
             line = near(rng, lines[-1])

@@ -24,6 +24,8 @@ MIXED = 1024
 HIT_CROP_PX = 2.25
 # Cables in images are about as wide as this lets them be seen.
 ZOOM = 1.5
+# Places where a cable turns back tightly are rare, and a trace that steps over one is wrong.
+HAIRPINS = 0.3
 
 
 def mirrored(batch: Batch) -> Batch:
@@ -59,7 +61,7 @@ class TracerTask:
         crops: list[Crop] = []
         targets: list[Floats] = []
         for samples in sample_stream(
-            seed, first, stride, SceneConfig(), SampleConfig(zoom=self.zoom)
+            seed, first, stride, SceneConfig(hairpins=HAIRPINS), SampleConfig(zoom=self.zoom)
         ):
             crops.extend(samples.crops)
             targets.extend(samples.targets)

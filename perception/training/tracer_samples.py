@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter1d
 
 from perception.cable.polyline import arc_lengths, point_at
@@ -14,11 +15,14 @@ from perception.models.tracer_crop import make_crop
 from perception.models.tracer_net import HORIZONS
 from perception.training.contact import crossings, near_pairs
 from perception.training.scenes import Scene, SceneConfig, make_scene
+from perception.training.waypoints import hairpin_nodes
 
 NOWHERE = -1000.0
 # Strands closer than this touch [cable widths].
 BESIDE = 1.4
 BESIDE_NODES = 12
+# Nodes to either side of a hairpin within which the cable turns back.
+HAIRPIN_NODES = 8
 # Length over which a trace drifts off and comes back [steps].
 DRIFT_STEPS = 1.5
 # Farther off a trace may be on the next strand, and what is right is no longer known.
@@ -46,6 +50,7 @@ class SampleConfig:
     Attributes:
         from_scene: Samples a scene.
         zoom: Pixels of a crop a unit.
+        hairpins: Share of samples placed where the cable turns back tightly, if it does.
         interesting: Share of samples placed where other strands are near.
         ends: Share of samples within three steps of an end of a cable.
         scale_error: Standard deviation of the logarithm of the cable's assumed width.
@@ -56,6 +61,7 @@ class SampleConfig:
 
     from_scene: int = 32
     zoom: float = 1.0
+    hairpins: float = 0.2
     interesting: float = 0.65
     ends: float = 0.1
     scale_error: float = 0.12
@@ -80,11 +86,12 @@ def scene_samples(rng: np.random.Generator, scene: Scene, config: SampleConfig) 
     width_px = scene.width_px * float(np.exp(rng.normal(0.0, config.scale_error)))
     scaled = scale_image(scene.image, width_px, tracer_crop.WIDTH, config.zoom)
     lines = [scaled.into(cable.points_px) for cable in scene.cables]
-    near = _near_strands(lines)
+    near, bends = _near_strands(lines), [hairpin_nodes(each, HAIRPIN_NODES) for each in lines]
     crops, targets = [], []
     for _ in range(config.from_scene):
         which = int(rng.integers(len(lines)))
-        line, at = lines[which], _place(rng, len(lines[which]), near[which], config)
+        line = lines[which]
+        at = _place(rng, len(line), near[which], bends[which], config)
         if rng.random() < 0.5:
             line, at = line[::-1], len(line) - 1 - at
         drawn = _draw_sample(rng, scaled, line, at, config)
@@ -120,8 +127,16 @@ def _near_strands(lines: list[Floats]) -> list[Floats]:
     ]
 
 
-def _place(rng: np.random.Generator, nodes: int, near: Floats, config: SampleConfig) -> float:
+def _place(
+    rng: np.random.Generator,
+    nodes: int,
+    near: Floats,
+    bends: NDArray[np.int64],
+    config: SampleConfig,
+) -> float:
     """Return the node number, with fraction, that a sample is about."""
+    if len(bends) and rng.random() < config.hairpins:
+        return float(rng.choice(bends) + rng.uniform(-10.0, 10.0))
     if rng.random() < config.ends:
         return float(nodes - 1 - rng.uniform(0.0, 12.0))
     if len(near) and rng.random() < config.interesting:

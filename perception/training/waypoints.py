@@ -8,6 +8,8 @@ from scipy.ndimage import gaussian_filter1d
 Points = NDArray[np.float64]
 
 SPACING = 0.5
+# A hairpin is where a line comes back to this share of its way.
+HAIRPIN_SHARE = 0.5
 
 
 def resample(points: Points, spacing: float = SPACING) -> Points:
@@ -27,3 +29,12 @@ def through(waypoints: Points, stiffness: float) -> Points:
     curve = resample(CubicSpline(at, waypoints)(fine))
     smooth = gaussian_filter1d(curve, stiffness / SPACING, axis=0, mode="nearest")
     return resample(smooth)
+
+
+def hairpin_nodes(line: Points, reach: int) -> NDArray[np.int64]:
+    """Return the nodes about which a line turns back within so many nodes to either side."""
+    steps = np.linalg.norm(np.diff(line, axis=0), axis=1)
+    along = np.concatenate([[0.0], np.cumsum(steps)])
+    ways = along[2 * reach :] - along[: -2 * reach]
+    chords = np.linalg.norm(line[2 * reach :] - line[: -2 * reach], axis=1)
+    return np.flatnonzero(chords < HAIRPIN_SHARE * ways) + reach

@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -29,6 +31,14 @@ def test_targets_lie_one_step_ahead():
     # A bend makes the chord shorter than the arc, and nothing makes it longer.
     assert gaps.max() < tracer_crop.STEP * 1.01
     assert np.median(gaps) > tracer_crop.STEP * 0.9
+
+
+def test_cable_turns_back_in_samples_of_hairpins():
+    rng = np.random.default_rng(3)
+    folded = make_scene(rng, SceneConfig(extent=24.0, family="hairpin", cables=1))
+    targets = scene_samples(rng, folded, replace(STRAIGHT, hairpins=1.0)).targets
+    after_two = targets[targets[:, 1, 0] > NOWHERE, 1]
+    assert (after_two[:, 0] < tracer_crop.HERE[0] + 0.5 * tracer_crop.STEP).any()
 
 
 def test_path_ends_at_its_place_in_the_crop():

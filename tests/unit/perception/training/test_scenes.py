@@ -28,6 +28,15 @@ def test_a_hook_goes_round_a_place_of_the_other_cable():
     assert np.mean(np.array(found) >= 2) > 0.8
 
 
+def test_a_hairpin_is_in_view():
+    rng = np.random.default_rng(6)
+    line = curves.FAMILIES["hairpin"](rng, 40.0)
+    # Eight widths of cable that end within four of where they began.
+    folded = np.linalg.norm(line[16:] - line[:-16], axis=1) < 4.0
+    bends = line[8:-8][folded]
+    assert ((bends > 0.0) & (bends < 40.0)).all(axis=1).any()
+
+
 @pytest.mark.parametrize("near", [curves.beside, curves.touching])
 def test_a_curve_beside_another_comes_near_it(near):
     rng = np.random.default_rng(5)
