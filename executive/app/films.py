@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from executive.app.views import scene_frames
+from executive.app.scenes import scene_frames
 from executive.core.errors import InputError, RecordingError
 from executive.engine.recording.reader import Recording
 from perception.camera import CameraModel

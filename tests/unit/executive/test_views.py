@@ -8,6 +8,7 @@ from toy_runs import RUNNING, Leaf, built, header_of
 
 from executive.app import views
 from executive.app.overlays import target_overlay
+from executive.app.scenes import SceneFollower, scene_frames
 from executive.core.errors import DeviceError, InputError, RecordingError
 from executive.core.world import StreamMessage
 from executive.engine.blackboard import Write
@@ -86,7 +87,7 @@ def recording(tmp_path):
 
 
 def test_replay_shows_the_scene_as_it_was_known_at_each_tick(recording):
-    frames = list(views.scene_frames(Recording.open(recording)))
+    frames = list(scene_frames(Recording.open(recording)))
     assert [frame.time_s for frame in frames] == pytest.approx([0.1, 0.2, 0.3])
     for frame in frames:
         assert frame.link_poses["left_link_1"][2] == pytest.approx(frame.time_s)
@@ -100,13 +101,13 @@ def test_all_cables_are_shown():
     quat_xyzw = np.array([[0.0, 0.0, 0.0, 1.0]])
     lines_m = [NODES_M, NODES_M[:9]]
     data = scene_json(["left_link_1"], np.zeros((1, 3)), quat_xyzw, lines_m, 0.0035)
-    follower = views.SceneFollower()
+    follower = SceneFollower()
     follower.on_stream(StreamMessage("/scene", "Scene", 0.0, data))
     assert [len(line_m) for line_m in follower.frame(0.0).cables_m] == [31, 9]
 
 
 def test_a_plan_is_shown_until_it_has_ended():
-    follower = views.SceneFollower()
+    follower = SceneFollower()
     follower.on_stream(scene(0.0))
     ways = {"left": [[0.1 * k, 0.0, 0.2, 0.0, 0.0, 0.0, 1.0] for k in range(3)]}
     for tools in (ways, {}):
@@ -116,7 +117,7 @@ def test_a_plan_is_shown_until_it_has_ended():
 
 
 def test_live_and_replay_show_the_picture_that_was_looked_at(recording, monkeypatch):
-    replayed = list(views.scene_frames(Recording.open(recording)))
+    replayed = list(scene_frames(Recording.open(recording)))
     shown = []
     monkeypatch.setattr(views, "LiveViewer", lambda stage: shown.append(Screen(stage)) or shown[0])
     play(views.open_live_view("table_cell"))
@@ -134,7 +135,7 @@ def test_where_a_target_may_be_is_brighter_where_it_is_likelier():
 
 
 def test_trace_and_camera_are_laid_on_the_table(recording):
-    frame = list(views.scene_frames(Recording.open(recording)))[-1]
+    frame = list(scene_frames(Recording.open(recording)))[-1]
     assert frame.trace_m == pytest.approx(np.array([[0, 0, 0], [0.5, 0, 0], [0.5, -0.5, 0]]))
     assert CAMERA.project(frame.trace_m) == pytest.approx(PIXELS)
     assert frame.camera.position_m == pytest.approx([0.0, 0.0, 1.0])
@@ -179,7 +180,7 @@ def test_live_view_shows_what_the_replay_shows(recording, monkeypatch):
     live = views.open_live_view("table_cell")
     play(live)
     live.close()
-    shown, replayed = live._viewer.frames, list(views.scene_frames(Recording.open(recording)))
+    shown, replayed = live._viewer.frames, list(scene_frames(Recording.open(recording)))
     assert live._viewer.closed
     assert shown[-1].trace_m == pytest.approx(replayed[-1].trace_m)
     assert shown[-1].camera.corners_m == pytest.approx(replayed[-1].camera.corners_m)

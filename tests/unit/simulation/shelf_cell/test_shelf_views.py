@@ -7,7 +7,7 @@ import re
 import numpy as np
 import pytest
 
-from executive.app.views import SHELF_EYE, SceneFollower
+from executive.app.scenes import SHELF_EYE, SceneFollower
 from robots.descriptions import DESCRIPTIONS
 from robots.shelf_arm.scene import ROBOT, ShelfSize, open_scene
 from robots.viewer import Stage, write_html
