@@ -30,7 +30,6 @@ from executive.core.skill import In, Port, Skill, SkillRun
 from executive.engine.loading.loader import Program, load_program
 from executive.engine.nodes.builder import BuiltTree, build
 
-STATION_NODES = 22
 BLOCK_NODES = 9
 FAILED = "bench.failed"
 SUBTREE = "subtree"

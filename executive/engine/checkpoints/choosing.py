@@ -83,12 +83,6 @@ def chosen(recording: Recording, wanted: str = "") -> CheckpointInfo:
     raise InputError(f"{recording.path}: no checkpoint yet; {_why_none(recording)}")
 
 
-def skipped(recording: Recording, used: CheckpointInfo) -> tuple[CheckpointInfo, ...]:
-    """Return the checkpoints after the one that is used."""
-    later = checkpoints(recording)
-    return tuple(info for info in later if info.message.number > used.message.number)
-
-
 def _refuse_when_answered(recording: Recording, found: Sequence[CheckpointInfo]) -> None:
     if recording.result is None or recording.result.report.outcome not in _ANSWERED:
         return

@@ -1,17 +1,25 @@
 """Our trees as XML of BehaviorTree.CPP v4, or every reason why that cannot say them."""
 
-import inspect
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, Final
 
 from executive.core.errors import DocumentError, Fault, InputError
 from executive.core.skill import Port, Skill, input_ports
-from executive.engine.exchange.cpptypes import cpp_type, read_literal, write_literal
+from executive.engine.exchange.attributes import (
+    comment_text,
+    input_text,
+    literal_text,
+    milliseconds,
+    plain_text,
+    times_text,
+)
+from executive.engine.exchange.cpptypes import write_literal
 from executive.engine.exchange.dataflow import key_in
+from executive.engine.exchange.palette import foreign_id, skill_model, tree_model
 from executive.engine.exchange.scripting import write_assignments, write_condition
 from executive.engine.exchange.vocabulary import COUNTERPARTS, LOOPS, SWITCHES
-from executive.engine.exchange.xmltext import NOT_XML, XmlElement, printable
+from executive.engine.exchange.xmltext import XmlElement
 from executive.engine.language.block_models import (
     ForEachBody,
     ParallelBody,
@@ -31,8 +39,6 @@ from executive.engine.language.node_models import (
     WhenNode,
 )
 from executive.engine.language.outline import NodeSpec, TreeSpec
-from executive.engine.language.porttypes import type_name
-from executive.engine.language.stubs import ScriptedSkill
 from executive.engine.language.values import Literal, key_of, parse_value
 from executive.engine.loading.loader import Program
 
@@ -50,10 +56,10 @@ _ENDS: Final[Mapping[str, str]] = {
     "on_failure": "_onFailure",
     "on_halt": "_onHalted",
 }
+_ITEMS: Final = {"int": "int", "bool": "bool", "double": "float", "std::string": "str"}
 _IN_ONE_TICK: Final = (
     "a child that answers at once is run again within one tick there, here in the next one"
 )
-_LIMIT: Final = 2**31 - 1
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,7 +117,8 @@ class _Export:
         root = XmlElement("root", {"BTCPP_format": "4", "main_tree_to_execute": main})
         root.children = [self._tree(tree) for tree in trees]
         self._note_inputs(self._program.tree)
-        models = [*self._models(), *map(_tree_model, trees)]
+        skills = [skill_model(name, skill) for name, skill in sorted(self._skills.items())]
+        models = [*skills, *map(tree_model, trees)]
         if models:
             root.children.append(XmlElement("TreeNodesModel", {}, models))
         if self._faults:
@@ -120,12 +127,11 @@ class _Export:
         return Exported(f"{text}\n", tuple(self._notes))
 
     def _tree(self, tree: TreeSpec) -> XmlElement:
-        about = tree.document.about
-        comment = "" if "--" in about or about.endswith("-") else about
         root = self._node(tree.root)
         if tree.document.keep:
             root = self._with_first_values(tree, root)
-        return XmlElement("BehaviorTree", {"ID": tree.name}, [root], comment=printable(comment))
+        comment = comment_text(tree.document.about)
+        return XmlElement("BehaviorTree", {"ID": tree.name}, [root], comment=comment)
 
     def _with_first_values(self, tree: TreeSpec, root: XmlElement) -> XmlElement:
         """Set keys once, however often the tree starts: RunOnce is skipped ever after."""
@@ -168,7 +174,7 @@ class _Export:
 
     def _guarded(self, model: NodeModel, built: XmlElement) -> XmlElement:
         if model.about:
-            built.attributes["_description"] = _plain_text(model.about)
+            built.attributes["_description"] = plain_text(model.about)
         if model.while_ is not None:
             asks = XmlElement("ScriptCondition", {"code": write_condition(model.while_)})
             built = XmlElement("ReactiveSequence", {}, [asks, built])
@@ -205,7 +211,7 @@ class _Export:
         attributes = {"ID": tree.name, **self._wires(model, tree.inputs)}
         for name, port in tree.inputs.items():
             if name not in model.in_ and not port.required:
-                attributes[name] = _literal_text(port.default, port)
+                attributes[name] = literal_text(port.default, port)
         return XmlElement("SubTree", attributes)
 
     def _wires(self, model: SkillNode | SubtreeNode, ports: Mapping[str, Port]) -> dict[str, str]:
@@ -213,7 +219,7 @@ class _Export:
         for name, raw in model.in_.items():
             if name == "name":
                 raise InputError("an input called 'name' cannot be told from the node's name there")
-            wires[name] = _input_text(name, raw, ports[name])
+            wires[name] = input_text(name, raw, ports[name])
         for name, reference in model.out.items():
             wires[name] = f"{{{reference.removeprefix('$')}}}"
         return wires
@@ -234,7 +240,7 @@ class _Export:
     def _wait(self, _: NodeSpec, model: WaitNode) -> XmlElement:
         if model.wait == "forever":
             raise InputError("wait: forever has no counterpart there; try a skill that waits")
-        return XmlElement("Sleep", {"msec": _milliseconds(model.wait)})
+        return XmlElement("Sleep", {"msec": milliseconds(model.wait)})
 
     def _fail(self, node: NodeSpec, _: NodeModel) -> XmlElement:
         self._note(node, "the reason is left out: a node fails without one there")
@@ -251,7 +257,7 @@ class _Export:
         for i, text in enumerate(model.cases, start=1):
             if key_in(text, "") is not None:
                 raise InputError(f"case {text!r} would be a key there")
-            attributes[f"case_{i}"] = _plain_text(text)
+            attributes[f"case_{i}"] = plain_text(text)
         children = self._children(node)
         if model.default is None:
             children.append(XmlElement("AlwaysFailure"))
@@ -291,17 +297,17 @@ class _Export:
                 "delay_s has no counterpart there; try a sequence of the child after a wait"
             )
         self._note(node, _IN_ONE_TICK)
-        times = _times(model.times)
+        times = times_text(model.times)
         return XmlElement("RetryUntilSuccessful", {"num_attempts": times}, self._children(node))
 
     def _repeat(self, node: NodeSpec, model: RepeatBody) -> XmlElement:
         if model.delay_s != 0.0:
             raise InputError("delay_s has no counterpart there; try a wait in a sequence")
         self._note(node, _IN_ONE_TICK)
-        return XmlElement("Repeat", {"num_cycles": _times(model.times)}, self._children(node))
+        return XmlElement("Repeat", {"num_cycles": times_text(model.times)}, self._children(node))
 
     def _timeout(self, node: NodeSpec, model: TimeoutBody) -> XmlElement:
-        return XmlElement("Timeout", {"msec": _milliseconds(model.seconds)}, self._children(node))
+        return XmlElement("Timeout", {"msec": milliseconds(model.seconds)}, self._children(node))
 
     def _for_each(self, node: NodeSpec, model: ForEachBody) -> XmlElement:
         value = parse_value(model.in_)
@@ -330,131 +336,11 @@ class _Export:
             raise InputError("until: success has no counterpart there; RunOnce keeps any answer")
         return XmlElement("RunOnce", {"then_skip": "false"}, self._children(node))
 
-    def _models(self) -> Iterable[XmlElement]:
-        for name, skill in sorted(self._skills.items()):
-            about = (inspect.getdoc(skill) or "").partition("\n")[0]
-            ports = _port_models(input_ports(skill), skill.OUT)
-            yield XmlElement("Action", {"ID": name}, ports, comment=_comment(about))
-
-
-_ITEMS: Final = {"int": "int", "bool": "bool", "double": "float", "std::string": "str"}
-
-
-def foreign_id(name: str, skill: type[Skill]) -> str:
-    """Return what a skill is called there: what its stub stands for, or its own name."""
-    stands_for = skill.STANDS_FOR if issubclass(skill, ScriptedSkill) else ""
-    return stands_for or name
-
-
-def _tree_model(tree: TreeSpec) -> XmlElement:
-    return XmlElement("SubTree", {"ID": tree.name}, _port_models(tree.inputs, tree.outputs))
-
-
-def _port_models(inputs: Mapping[str, Port], outputs: Mapping[str, Port]) -> list[XmlElement]:
-    found = []
-    for tag, ports in (("input_port", inputs), ("output_port", outputs)):
-        for name, port in ports.items():
-            attributes = {"name": name}
-            if kind := cpp_type(type_name(port.type)):
-                attributes["type"] = kind
-            if not port.required and tag == "input_port" and port.default is not None:
-                attributes["default"] = _default_text(port)
-            unit = f" [{port.unit}]" if port.unit else ""
-            found.append(XmlElement(tag, attributes, text=printable(f"{port.about}{unit}".strip())))
-    return found
-
-
-def _default_text(port: Port) -> str:
-    """Return a default for the palette of an editor, in words where it is no plain value."""
-    try:
-        return _literal_text(port.default, port)
-    except InputError:
-        return printable(str(port.default))
-
 
 def _named(element: XmlElement, name: str) -> dict[str, str]:
     """Put the name of a node behind its ID, before its ports."""
     first = {k: v for k, v in element.attributes.items() if k == "ID"}
     return {**first, "name": name, **element.attributes}
-
-
-def _comment(text: str) -> str:
-    return "" if "--" in text or text.endswith("-") else printable(text)
-
-
-def _plain_text(text: str) -> str:
-    if NOT_XML.search(text):
-        raise InputError(f"{text!r} has characters that XML cannot hold")
-    return text
-
-
-def _input_text(name: str, raw: object, port: Port) -> str:
-    value = parse_value(raw)
-    if isinstance(value, Literal):
-        try:
-            return _literal_text(value.value, port)
-        except InputError as error:
-            raise InputError(f"input {name!r}: {error}") from None
-    key = key_of(value)
-    if key is None:
-        raise InputError(
-            f"input {name!r}: ports there take no expressions such as {value.text!r}; "
-            "try to set a key before"
-        )
-    return f"{{{key}}}"
-
-
-def _literal_text(value: object, port: Port) -> str:
-    """Return a literal as an attribute that is read back as the same value."""
-    if isinstance(value, tuple):
-        value = list(value)
-    kind = type_name(port.type)
-    for text in (write_literal(value), write_literal({"": value})[len('json:{"": ') : -1]):
-        as_json = text if text.startswith("json:") else f"json:{text}"
-        for attempt in (text, as_json):
-            if _reads_back(attempt, value, kind):
-                return attempt
-    raise InputError(f"{value!r} cannot stand in an attribute there")
-
-
-def _reads_back(text: str, value: object, kind: str) -> bool:
-    if NOT_XML.search(text) or key_in(text, "") is not None:
-        return False
-    try:
-        back = read_literal(text, kind)
-    except InputError:
-        return False
-    same_type = type(back) is type(value) or {type(back), type(value)} == {int, float}
-    return back == value and same_type
-
-
-def _milliseconds(seconds: float | str) -> str:
-    if isinstance(seconds, str):
-        text = seconds.removeprefix("$").replace(" ", "")
-        key = text.removesuffix("/1000")
-        if key == text or not key.isidentifier():
-            raise InputError(
-                f"{seconds!r}: there the time is a number of milliseconds, or a key of one; "
-                "try '$key / 1000'"
-            )
-        return f"{{{key}}}"
-    whole = round(seconds * 1000)
-    if abs(whole - seconds * 1000) > 1e-6 or not 0 < whole <= _LIMIT:
-        if seconds == 0.0:
-            return "0"
-        raise InputError(f"{seconds:g} s is no whole number of milliseconds, 1 to {_LIMIT}")
-    return str(whole)
-
-
-def _times(times: int | str) -> str:
-    if isinstance(times, int):
-        return str(times)
-    if times == "forever":
-        return "-1"
-    key = key_of(parse_value(times))
-    if key is None:
-        raise InputError(f"times: {times!r} is no plain key; try to set one before")
-    return f"{{{key}}}"
 
 
 def _needed(model: ParallelBody, names: list[str]) -> int:

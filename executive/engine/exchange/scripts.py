@@ -61,7 +61,6 @@ class Statement:
         kind: What the value is known to be.
         reads: Keys that it reads, by their foreign names.
         written: The key by its foreign name.
-        creates: Whether it may be the first to set the key.
     """
 
     key: str
@@ -69,7 +68,6 @@ class Statement:
     kind: Kind
     reads: tuple[str, ...] = ()
     written: str = ""
-    creates: bool = True
 
 
 class Vocabulary:
@@ -160,7 +158,7 @@ class _Parser:
             kind = self._sum_kind(following[0], self._words.kinds.get(target, "any"), kind)
             value = ast.BinOp(ast.Name(key), operator(), value)
         reads = tuple(self._reads)
-        return Statement(key, ast.unparse(value), kind, reads, target, following == ":=")
+        return Statement(key, ast.unparse(value), kind, reads, target)
 
     def _ternary(self) -> tuple[ast.expr, Kind]:
         self._depth += 1

@@ -20,6 +20,7 @@ from executive.engine.exchange.dataflow import (
 from executive.engine.exchange.draft import Draft, Skip, block, leaf, none_of
 from executive.engine.exchange.markup import Element
 from executive.engine.exchange.naming import our_name
+from executive.engine.exchange.parameters import Parameters, Wires
 from executive.engine.exchange.plan import Plan, is_custom, key_type
 from executive.engine.exchange.scripts import Kind, Vocabulary, read_condition, read_script
 from executive.engine.exchange.skipping import may_skip
@@ -67,6 +68,7 @@ class TreeTranslator:
     def __init__(self, plan: Plan, tree: str, enums: Mapping[str, int]) -> None:
         """Look at one tree of a plan."""
         self._plan, self._tree = plan, tree
+        self._parameters = Parameters(plan.keys)
         self._words = Vocabulary(plan.keys, enums=enums, kinds=self._known_kinds())
         self.kept: dict[str, object] = {}
         self.uses_stubs = False
@@ -105,7 +107,7 @@ class TreeTranslator:
             "Precondition": self._precondition,
             "AlwaysSuccess": lambda *_: leaf("when", True),
             "AlwaysFailure": lambda *_: leaf("when", False),
-            "Sleep": lambda e, _: leaf("wait", self._seconds(e, "msec")),
+            "Sleep": lambda e, _: leaf("wait", self._parameters.seconds(e, "msec")),
             "SetBlackboard": self._set_blackboard,
             "UnsetBlackboard": self._unset_blackboard,
             "Script": self._script,
@@ -257,8 +259,8 @@ class TreeTranslator:
 
     def _parallel(self, element: Element, _: Skip | None) -> Draft:
         count = len(element.children)
-        need = self._threshold(element, "success_count", -1)
-        fail = self._threshold(element, "failure_count", 1)
+        need = self._parameters.threshold(element, "success_count", -1)
+        fail = self._parameters.threshold(element, "failure_count", 1)
         children = self._told_apart(element)
         possible = count - need + 1  # so many failures put success out of reach
         if fail < possible:
@@ -276,7 +278,7 @@ class TreeTranslator:
 
     def _parallel_all(self, element: Element, _: Skip | None) -> Draft:
         count = len(element.children)
-        fail = self._threshold(element, "max_failures", 1)
+        fail = self._parameters.threshold(element, "max_failures", 1)
         children = self._told_apart(element)
         body: dict[str, object] = {}
         if fail > 1:
@@ -287,44 +289,6 @@ class TreeTranslator:
         if any(may_skip(child, self._plan.trees) for child in element.children):
             raise InputError("a child may be SKIPPED, and is asked again in every tick; " + _WRAP)
         return self._children(element, None)
-
-    def _threshold(self, element: Element, port: str, default: int) -> int:
-        count = len(element.children)
-        value = self._whole(element, port, default)
-        wanted = count + value + 1 if value < 0 else value
-        if not 1 <= wanted <= count:
-            raise InputError(f"{port}={value} asks for {wanted} of {count} children")
-        return wanted
-
-    def _whole(self, element: Element, port: str, default: int | None = None) -> int:
-        value = self._parameter(element, port, "int", default)
-        if not isinstance(value, int):
-            raise InputError(f"{port} is read from a key; our parallel takes a number")
-        return value
-
-    def _parameter(self, element: Element, port: str, kind: str, default: object = None) -> object:
-        """Return a parameter as a literal, or as `$key`."""
-        text = element.attributes.get(port)
-        if text is None:
-            if default is None:
-                raise InputError(f"needs the port {port!r}")
-            return default
-        key = key_in(text, port)
-        if key is not None:
-            return f"${self._plan.keys(key)}"
-        try:
-            return read_literal(text, kind)
-        except InputError as error:
-            raise InputError(f"{port}: {error}") from None
-
-    def _seconds(self, element: Element, port: str) -> float | str:
-        value = self._parameter(element, port, "int")
-        if isinstance(value, str):
-            return f"{value} / 1000"
-        assert isinstance(value, int)
-        if value < 0:
-            raise InputError(f"{port}: expected 0 or more, got {value}")
-        return value / 1000
 
     def _branches(self, element: Element, skip: Skip | None) -> Draft:
         if not 2 <= len(element.children) <= 3:
@@ -367,7 +331,7 @@ class TreeTranslator:
     def _again(self, element: Element, skip: Skip | None, port: str) -> Draft:
         """Translate Repeat and RetryUntilSuccessful, which end on the other answer."""
         kind, ends = ("repeat", "failure") if port == "num_cycles" else ("retry", "success")
-        times = self._parameter(element, port, "int")
+        times = self._parameters.read(element, port, "int")
         if times == -1:
             times = "forever"
         elif isinstance(times, int) and times < 1:
@@ -378,18 +342,18 @@ class TreeTranslator:
         return block("repeat", self._child(element, None), times="forever")
 
     def _timeout(self, element: Element, skip: Skip | None) -> Draft:
-        child, seconds = self._child(element, skip), self._seconds(element, "msec")
+        child, seconds = self._child(element, skip), self._parameters.seconds(element, "msec")
         if seconds == 0:
             self._plan.note(element, "msec=0 sets no limit there; left out")
             return child
         return block("timeout", child, seconds=seconds)
 
     def _delay(self, element: Element, skip: Skip | None) -> Draft:
-        child, seconds = self._child(element, skip), self._seconds(element, "delay_msec")
+        child, seconds = self._child(element, skip), self._parameters.seconds(element, "delay_msec")
         return block("sequence", leaf("wait", seconds), child)
 
     def _run_once(self, element: Element, skip: Skip | None) -> Draft:
-        then_skip = self._parameter(element, "then_skip", "bool", True)
+        then_skip = self._parameters.read(element, "then_skip", "bool", True)
         child = self._child(element, None)
         if then_skip is False:
             return block("run_once", child)
@@ -422,7 +386,7 @@ class TreeTranslator:
         value = key_in(element.attributes.get("value", ""), "value")
         if value is None:
             raise InputError("needs the port 'value', as in value=\"{item}\"")
-        items = self._parameter(element, "queue", f"list[{kind}]")
+        items = self._parameters.read(element, "queue", f"list[{kind}]")
         if isinstance(items, str):
             self._plan.note(element, "takes its items out of the queue there, here the list stays")
         child = self._child(element, "success")
@@ -478,9 +442,7 @@ class TreeTranslator:
         self.called.append((tree, skip, element))
         ports = self._plan.ports[tree]
         wired = dict(wired_ports(element, self._plan.trees))
-        draft = leaf("subtree", self._plan.tree_names(tree))
-        ins: dict[str, object] = {}
-        outs: dict[str, str] = {}
+        wires = Wires(self._plan.keys)
         for key, port in ports.items():
             text = wired.get(key)
             if text is None and is_automatic(element) and not key.startswith("_"):
@@ -488,34 +450,11 @@ class TreeTranslator:
             if text is None and port.direction != "out":
                 raise InputError(f"tree {tree!r} reads {key!r}, which is not given; try remapping")
             if text is not None:
-                self._wire(key, text, port.direction, port.type, ins, outs)
+                wires.add(key, text, port.direction, port.type)
         for key in wired:
             if key not in ports:
                 self._plan.note(element, f"tree {tree!r} does not use {key!r}; left out")
-        return _with_wires(draft, ins, outs)
-
-    def _wire(
-        self,
-        port: str,
-        text: str,
-        direction: str,
-        kind: str,
-        ins: dict[str, object],
-        outs: dict[str, str],
-    ) -> None:
-        """Wire a port; one that is read and written is an input and an output here."""
-        name = self._plan.keys(port)
-        key = key_in(text, port)
-        if direction != "out":
-            reads = name if direction == "in" else f"{name}_in"
-            ins[reads] = _input(read_literal(text, kind)) if key is None else self._reference(key)
-        if direction != "in" and key is not None:
-            outs[name] = self._reference(key)
-
-    def _reference(self, key: str) -> str:
-        if key.startswith("@"):
-            raise InputError(f"{key!r} is on the root's blackboard; our trees see their own keys")
-        return f"${self._plan.keys(key)}"
+        return wires.onto(leaf("subtree", self._plan.tree_names(tree)))
 
     def _custom(self, element: Element, name: str) -> Draft:
         is_stub = name in self._plan.stubs
@@ -524,15 +463,14 @@ class TreeTranslator:
         declared = ports_of(element, self._plan.trees)
         if name in self._plan.trees.models:
             self._check_ports(element, [*declared])
-        ins: dict[str, object] = {}
-        outs: dict[str, str] = {}
+        wires = Wires(self._plan.keys)
         for port, text in wired_ports(element, self._plan.trees):
             direction = self._plan.flow.direction(element, port)
             kind = self._port_type(name, port, declared[port].type if port in declared else "")
             if direction == "out" and key_in(text, port) is None:
                 raise InputError(f"{port} is an output; expected a key such as {{{port}}}")
-            self._wire(port, text, direction, kind, ins, outs)
-        return _with_wires(leaf("skill", skill), ins, outs)
+            wires.add(port, text, direction, kind)
+        return wires.onto(leaf("skill", skill))
 
     def _port_type(self, name: str, port: str, declared: str) -> str:
         if name in self._plan.stubs:
@@ -541,19 +479,6 @@ class TreeTranslator:
 
 
 _WRAP: Final = "try it in a ForceSuccess or a Sequence of its own"
-
-
-def _with_wires(draft: Draft, ins: dict[str, object], outs: dict[str, str]) -> Draft:
-    if ins:
-        draft.body["in"] = ins
-    if outs:
-        draft.body["out"] = outs
-    return draft
-
-
-def _input(value: object) -> object:
-    """Return a literal as it stands at an input, where `$` means a key."""
-    return f"${value}" if isinstance(value, str) and value.startswith("$") else value
 
 
 def _expression(value: object) -> str:
