@@ -15,7 +15,7 @@ Floats = NDArray[np.float64]
 Indices = NDArray[np.intp]
 
 # Segments are looked at in blocks, for speed.
-BLOCK = 16
+BLOCK = 8
 TOUCHING = 1e-9
 
 
@@ -60,11 +60,9 @@ def intersections(a: Floats, b: Floats) -> tuple[Floats, Floats, NDArray[np.int6
         Positions along `a`, along `b` (in segments from their starts), and the turn from
         `a` onto `b` (+1 counter-clockwise with y up), each of shape (K,).
     """
-    i, j = _near_segments(a, b)
+    i, j = _facing_segments(a, b)
     along_a, along_b = a[i + 1] - a[i], b[j + 1] - b[j]
-    meet = (_left(along_a, b[j] - a[i]) != _left(along_a, b[j + 1] - a[i])) & (
-        _left(along_b, a[i] - b[j]) != _left(along_b, a[i + 1] - b[j])
-    )
+    meet = _left(along_b, a[i] - b[j]) != _left(along_b, a[i + 1] - b[j])
     area = _cross(along_a, along_b)
     apart = np.flatnonzero(meet & (area != 0.0))
     apart = apart[np.lexsort((j[apart], i[apart]))]
@@ -75,17 +73,29 @@ def intersections(a: Floats, b: Floats) -> tuple[Floats, Floats, NDArray[np.int6
     return i + u, j + v, np.sign(area).astype(np.int64)
 
 
-def _near_segments(a: Floats, b: Floats) -> tuple[Indices, Indices]:
-    """Return pairs of segments that may meet: those of blocks whose boxes overlap."""
+def _facing_segments(a: Floats, b: Floats) -> tuple[Indices, Indices]:
+    """Return pairs of segments that may meet: ends of the second on both sides of the first.
+
+    Only blocks whose boxes overlap are looked at.
+    """
     low_a, high_a = _boxes(a)
     low_b, high_b = _boxes(b)
     overlap = (low_a[:, None] <= high_b[None]) & (low_b[None] <= high_a[:, None])
-    blocks_a, blocks_b = np.nonzero(overlap.all(axis=2))
-    within = np.arange(BLOCK)
-    i = np.repeat(blocks_a[:, None] * BLOCK + within, BLOCK, axis=1).ravel()
-    j = np.tile(blocks_b[:, None] * BLOCK + within, BLOCK).ravel()
-    known = (i < len(a) - 1) & (j < len(b) - 1)
-    return i[known], j[known]
+    first, second = np.nonzero(overlap.all(axis=2))
+    corners_a, corners_b = _blocks(a)[first], _blocks(b)[second]
+    along = np.diff(corners_a, axis=1)[:, :, None]
+    left = _left(along, corners_b[:, None] - corners_a[:, :-1, None])
+    pair, i, j = np.nonzero(left[:, :, 1:] != left[:, :, :-1])
+    return first[pair] * BLOCK + i, second[pair] * BLOCK + j
+
+
+def _blocks(points: Floats) -> Floats:
+    """Return the corners of each block of segments, shape (blocks, BLOCK + 1, 2).
+
+    The last block is filled with segments of no length, which meet nothing.
+    """
+    starts = np.arange(0, max(len(points) - 1, 1), BLOCK)
+    return points[np.minimum(starts[:, None] + np.arange(BLOCK + 1), len(points) - 1)]
 
 
 def _boxes(points: Floats) -> tuple[Floats, Floats]:
