@@ -46,7 +46,7 @@ class Cause(StrEnum):
     ENDS = "no trace"
     TRACING = "tracing"
     CROSSING = "crossing"
-    KNOT = "knot"
+    DECIDING = "deciding"
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,7 +113,7 @@ def _cause(scene: KnotScene, seen: CableScene, number: int) -> Cause:
         return Cause.TRACING
     own = [c for c in seen.crossings if c.trace_over == c.trace_under == number]
     agree = crossings_agree(nodes, own, ALONG_WIDTHS * scene.width_px)
-    return Cause.KNOT if agree else Cause.CROSSING
+    return Cause.DECIDING if agree else Cause.CROSSING
 
 
 def follows(line_px: Floats, path_px: Floats, width_px: float) -> bool:

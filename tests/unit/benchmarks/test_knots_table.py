@@ -3,7 +3,7 @@ import pytest
 
 from benchmarks.knot_judging import Cause, Failure, Wrong
 from benchmarks.knot_scenes import KnotScene
-from benchmarks.knots import Trial, calibration, tried
+from benchmarks.knots import Trial, calibration, failures, tried
 from perception.cable.types import CableScene
 
 
@@ -30,6 +30,19 @@ def test_who_abstains_where_unsure_makes_no_errors():
     rows = _rows(sure + unsure)
     assert rows["knotted_error_of_surest_80"].value == 0.0
     assert rows["knotted_calibration_error"].value == pytest.approx(0.118, abs=0.01)
+
+
+def test_every_wrong_answer_counts_once_by_how_and_once_by_why():
+    missed = Trial(0.2, True, Failure(Wrong.MISSED, Cause.CROSSING))
+    elsewhere = Trial(0.9, True, Failure(Wrong.PLACE, Cause.TRACING))
+    trials = [missed, missed, elsewhere, Trial(0.9, True, None)]
+    shares = {row.name: row.value for row in failures("A1", trials) if row.value}
+    assert shares == {
+        "A1_missed": 0.5,
+        "A1_place": 0.25,
+        "A1_by_crossing": 0.5,
+        "A1_by_tracing": 0.25,
+    }
 
 
 def test_wrong_answers_are_told_with_their_cause(capsys):
