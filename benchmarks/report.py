@@ -6,6 +6,7 @@ from pathlib import Path
 
 from benchmarks.goals import parse_goal
 from benchmarks.harness import RESULTS
+from benchmarks.pictures import IMAGES, PICTURES
 
 PAGE = Path(__file__).parent.parent / "docs" / "results.md"
 HEAD = """# Results
@@ -70,12 +71,23 @@ def _section(document: Document) -> str:
         "",
         f"`python -m benchmarks {name} --seed {seed}`, commit {document['commit']}",
         "",
+        *_picture(str(name)),
         "| figure | value | unit | n | 95 % interval | goal |",
         "|---|---|---|---|---|---|",
         *(f"| {' | '.join(_cells(row))} |" for row in _rows(document)),
         "",
     ]
     return "\n".join(lines)
+
+
+def _picture(benchmark: str) -> Iterator[str]:
+    """Yield the lines that show the picture of a benchmark, where there is one."""
+    picture = PICTURES.get(benchmark)
+    if picture is not None and (IMAGES / picture.file).exists():
+        yield f"![{picture.about}](images/{picture.file})"
+        yield ""
+        yield f"*{picture.about}*"
+        yield ""
 
 
 def _cells(row: Document) -> list[str]:

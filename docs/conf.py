@@ -2,7 +2,7 @@
 
 project = "Cellwright"
 project_copyright = "The Cellwright developers"
-extensions = ["myst_parser"]
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
 source_suffix = {".md": "markdown"}
 root_doc = "index"
 exclude_patterns: list[str] = []
@@ -16,3 +16,9 @@ html_theme = "furo"
 html_title = "Cellwright"
 html_show_sourcelink = False
 html_show_copyright = False
+
+# Docstrings are in Google style; types stand in the signatures.
+autodoc_default_options = {"members": True, "show-inheritance": True, "member-order": "bysource"}
+autodoc_typehints = "signature"
+napoleon_numpy_docstring = False
+napoleon_use_ivar = True

@@ -2,7 +2,7 @@
 
 A skill is a generator: each bare `yield` ends its share of one tick (RUNNING), `return`
 gives the outcome. Its inputs are the keyword arguments of `run`, so name, type and default
-are written once:
+are written once::
 
     class DetectEndpoints(Skill):
         \"\"\"Find both ends of the cable in an image.\"\"\"
@@ -100,7 +100,7 @@ class PausePolicy(StrEnum):
 class Skill(ABC):
     """One thing that a cell can do, looked up by name from a tree.
 
-    Class attributes:
+    Attributes:
         OUT: Output ports by name; `success(name=value)` must give each of them.
         REASONS: Every code that `failure` may carry.
         ACTS: Whether it moves something in the cell; run reports list it under actions.
