@@ -21,6 +21,8 @@ REPEAT_PROBABILITY = 0.02
 ENDPOINT_AHEAD = 2.2 * WIDTH
 ENDPOINT_ASIDE = 0.9 * WIDTH
 ENDPOINT_FACING = 0.5
+# It surely does so where the end is believed in as much; at others it may go on.
+SURE_END = 0.9
 EDGE_MARGIN = 0.5 * WIDTH
 
 
@@ -128,10 +130,12 @@ class Ends:
     Attributes:
         points: Where, shape (K, 2).
         directions: Unit vectors into the cable, shape (K, 2).
+        beliefs: Beliefs that they are ends, shape (K,).
     """
 
     points: Floats
     directions: Floats
+    beliefs: Floats
 
     @classmethod
     def of(cls, endpoints: Sequence[Endpoint], scaled: ScaledImage) -> "Ends":
@@ -139,15 +143,16 @@ class Ends:
         return cls(
             scaled.into(np.array([end.position_px for end in endpoints]).reshape(-1, 2)),
             np.array([end.direction for end in endpoints]).reshape(-1, 2),
+            np.array([end.probability for end in endpoints], dtype=float),
         )
 
     def without(self, place: Floats, near: float) -> "Ends":
         """Return the ends that are not near a place."""
         far = np.linalg.norm(self.points - place, axis=1) > near
-        return Ends(self.points[far], self.directions[far])
+        return Ends(self.points[far], self.directions[far], self.beliefs[far])
 
-    def reached(self, path: Path) -> Floats | None:
-        """Return the end that a path has come to, None if it has come to none."""
+    def reached(self, path: Path) -> int | None:
+        """Return the number of the end that a path has come to, None if it has come to none."""
         heading = path.heading
         offsets = self.points - path.points[-1]
         ahead = offsets @ heading
@@ -155,19 +160,27 @@ class Ends:
         near = (np.abs(ahead) < ENDPOINT_AHEAD) & (aside < ENDPOINT_ASIDE)
         facing = self.directions @ heading < -ENDPOINT_FACING
         found = np.flatnonzero(near & facing)
-        return self.points[found[aside[found].argmin()]] if len(found) else None
+        return int(found[aside[found].argmin()]) if len(found) else None
+
+    def doubtful(self, path: Path) -> int | None:
+        """Return the number of an end right ahead of a path at which it may also go on."""
+        number = self.reached(path)
+        if number is None or self.beliefs[number] >= SURE_END:
+            return None
+        ahead = float((self.points[number] - path.points[-1]) @ path.heading)
+        return number if ahead > 0.0 else None
 
 
 def checked(path: Path, image: ScaledImage, ends: Ends) -> Path:
-    """Return the path, ended where it reaches an end of a cable, the border or itself."""
+    """Return the path, ended where it reaches a sure end of a cable, the border or itself."""
     if path.end is not None:
         return path
     here = path.points[-1]
     if (here < EDGE_MARGIN).any() or (here > image.size - 1 - EDGE_MARGIN).any():
         return path.ended(TraceEnd.EDGE)
     end = ends.reached(path)
-    if end is not None:
-        return path.extended(end, 1.0).ended(TraceEnd.ENDPOINT)
+    if end is not None and ends.beliefs[end] >= SURE_END:
+        return path.extended(ends.points[end], 1.0).ended(TraceEnd.ENDPOINT)
     if repeats(path.points):
         return path.shortened(REPEATED).ended(TraceEnd.RETRACE, REPEAT_PROBABILITY)
     return path

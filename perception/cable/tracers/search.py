@@ -8,6 +8,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import partial
 
+import numpy as np
+
 from perception.cable.tracers.leaps import leap
 from perception.cable.tracers.modes import find_modes
 from perception.cable.tracers.paths import Ends, Path, checked
@@ -108,6 +110,18 @@ class Search:
 
     def _ways(self, image: ScaledImage, path: Path, outlook: Outlook) -> list[Path]:
         """Return every way in which a path may go on or end."""
+        number = self._ends.doubtful(path)
+        if number is None:
+            return self._ways_on(image, path, outlook)
+        belief = float(self._ends.beliefs[number])
+        on = self._ways_on(image, path, outlook)
+        loss = float(np.log1p(-belief))
+        past = [way.lifted(min(len(path.points), len(way.points) - 1), loss) for way in on]
+        arrived = path.extended(self._ends.points[number], belief).ended(TraceEnd.ENDPOINT)
+        return [arrived, *past]
+
+    def _ways_on(self, image: ScaledImage, path: Path, outlook: Outlook) -> list[Path]:
+        """Return every way in which a path may go on or end where no end is known."""
         config = self._config
         found = find_modes(outlook.cells, config.least, config.modes)
         modes = [mode for mode in found if mode.point_crop[0] > HERE[0] - BACK]
@@ -126,7 +140,7 @@ class Search:
         ]
         if config.leaps and len(modes) == 1:
             for point in leap(outlook, modes[0]):
-                if ways[0].end is None and not self._is_at_dead_end(ways[0]):
+                if ways[0].end is None and not self._is_to_be_looked_at(ways[0]):
                     ways[0] = self._checked(image, ways[0].extended(outlook.frame.back(point), 1.0))
         if end > config.least:
             ways.append(path.ended(TraceEnd.ENDPOINT, end / total))
@@ -138,11 +152,14 @@ class Search:
     def _is_at_dead_end(self, path: Path) -> bool:
         return self._sketch is not None and self._sketch.dead_ends.reached(path) is not None
 
+    def _is_to_be_looked_at(self, path: Path) -> bool:
+        return self._is_at_dead_end(path) or self._ends.doubtful(path) is not None
+
     def _run_on(self, image: ScaledImage, path: Path) -> Path:
         """Return the path up to the end of the stretch that it has come to."""
         points = self._sketch.stretches.ahead(path.points) if self._sketch is not None else ()
         for point in points:
-            if path.end is None:
+            if path.end is None and self._ends.doubtful(path) is None:
                 path = self._checked(image, path.extended(point, 1.0))
         return path
 

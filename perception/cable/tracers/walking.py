@@ -33,7 +33,7 @@ def walked_ends(
     line = stepwise(scaled.into(line_px))
     middle = len(line) // 2
     halves = (line[: middle + 2], line[middle:][::-1])
-    none = Ends(np.empty((0, 2)), np.empty((0, 2)))
+    none = Ends(np.empty((0, 2)), np.empty((0, 2)), np.empty(0))
     narrow = replace(config, beam=BEAM)
     searches = [
         Search([Path(half, np.zeros(len(half)))], none, narrow, sketch)

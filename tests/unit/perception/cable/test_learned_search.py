@@ -5,11 +5,13 @@ import pytest
 from perception.cable.tracers.modes import find_modes
 from perception.cable.tracers.paths import Ends, Path, checked, distances, repeats
 from perception.cable.tracers.rivals import RivalConfig, meeting, reduced
+from perception.cable.tracers.search import Search, SearchConfig
+from perception.cable.tracers.steps import Outlook
 from perception.cable.types import TraceEnd
 from perception.models.frames import ScaledImage, cut, scale_image, turned_frame
-from perception.models.tracer_crop import HERE, STEP, WIDTH
+from perception.models.tracer_crop import CELL, HERE, SIZE, STEP, WIDTH
 
-NO_ENDS = Ends(np.zeros((0, 2)), np.zeros((0, 2)))
+NO_ENDS = Ends(np.zeros((0, 2)), np.zeros((0, 2)), np.zeros(0))
 IMAGE = ScaledImage(np.zeros((400, 400), np.uint8), 1.0, 0.0)
 
 
@@ -20,6 +22,16 @@ def _path(points, log=-0.1):
 
 def _line(start, step, count):
     return np.asarray(start, dtype=float) + np.arange(count)[:, None] * np.asarray(step)
+
+
+def _straight_on(path):
+    """Return the outlook of a network that is sure that the cable goes straight on."""
+    cells = np.zeros((SIZE // CELL, SIZE // CELL))
+    row, column = round(HERE[1] / CELL), round((HERE[0] + STEP) / CELL)
+    cells[row, column] = 1.0
+    frame = turned_frame(path.points[-1], path.heading, HERE)
+    crop = np.zeros((3, SIZE, SIZE), np.float32)
+    return Outlook(frame, crop, cells, 0.0, np.zeros((2, *cells.shape)), clear=True)
 
 
 def test_modes_share_the_belief():
@@ -77,12 +89,29 @@ def test_a_path_ends_at_the_border_and_at_known_ends():
     inside = _path(_line((100.0, 200.0), (STEP, 0.0), 6))
     assert checked(inside, IMAGE, NO_ENDS).end is None
     end = inside.points[-1] + (WIDTH, 0.5 * WIDTH)
-    facing, passing = (Ends(end[None], np.array([way])) for way in ((-1.0, 0.0), (0.0, 1.0)))
+    facing, passing = (
+        Ends(end[None], np.array([way]), np.ones(1)) for way in ((-1.0, 0.0), (0.0, 1.0))
+    )
     # The end of a cable that lies across is none of this one's.
     assert checked(inside, IMAGE, passing).end is None
     ended = checked(inside, IMAGE, facing)
     assert ended.end is TraceEnd.ENDPOINT
     assert ended.points[-1] == pytest.approx(end)
+
+
+def test_at_an_end_that_is_doubted_a_path_may_go_on():
+    path = _path(_line((100.0, 200.0), (STEP, 0.0), 6))
+    end = path.points[-1] + (WIDTH, 0.0)
+    ends = Ends(end[None], np.array([[-1.0, 0.0]]), np.array([0.6]))
+    assert checked(path, IMAGE, ends).end is None
+    search = Search([path], ends, SearchConfig(leaps=False))
+    search.advance(IMAGE, [_straight_on(path)])
+    # Belief is divided between the end and the cable that goes on.
+    (ended,) = [each for each in search.found() if each.end is TraceEnd.ENDPOINT]
+    (alive,) = search.alive
+    assert np.exp(ended.log_probability - path.log_probability) == pytest.approx(0.6)
+    assert np.exp(alive.log_probability - path.log_probability) == pytest.approx(0.4)
+    assert ends.doubtful(alive) is None
 
 
 def test_going_back_over_oneself_is_noticed_and_crossing_is_not():

@@ -34,7 +34,9 @@ def _path(points, log=-0.1, end=TraceEnd.ENDPOINT, detours=()):
 
 
 def _survey(there, back, cable=None):
-    ends = Ends(np.array([LEFT, RIGHT, BELOW]), np.array([[1.0, 0.0], [-1.0, 0.0], [0.0, -1.0]]))
+    ends = Ends(
+        np.array([LEFT, RIGHT, BELOW]), np.array([[1.0, 0.0], [-1.0, 0.0], [0.0, -1.0]]), np.ones(3)
+    )
     mask = np.zeros((400, 400), np.uint8) if cable is None else cable
     return Survey(IMAGE, mask, 1.0, ends, (tuple(there), tuple(back), ()))
 
