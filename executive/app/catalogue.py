@@ -21,6 +21,8 @@ _SKILLS: Final = {
     "choose_policy": "skills.cable.choose_policy:ChoosePolicy",
     "classify_crossings": "skills.cable.classify_crossings:ClassifyCrossings",
     "clear_way": "skills.shelf.clear_way:ClearWay",
+    "compare_looks": "skills.cable.compare_looks:CompareLooks",
+    "conclude": "skills.cable.conclude:Conclude",
     "detect_endpoints": "skills.cable.detect_endpoints:DetectEndpoints",
     "detect_objects": "skills.shelf.detect_objects:DetectObjects",
     "dilate_knot": "skills.cable.dilate_knot:DilateKnot",

@@ -7,7 +7,7 @@ from typing import Annotated
 import numpy as np
 
 from executive.core.outcome import failure, success
-from executive.core.skill import In, SkillRun
+from executive.core.skill import In, Port, SkillRun
 from perception.cable.grasp_sites import GraspSite
 from perception.cable.polyline import arc_lengths
 from perception.cable.types import Crossing, Knot, Trace
@@ -15,7 +15,7 @@ from perception.camera import CameraFrame
 from robots.interfaces import Arm, Floats, MotionFailure, TcpGoal
 from skills.cable.grasping import CLEARANCE_M, LIFT_M, carried, grasp_goal
 from skills.cable.knot_sites import REACH_X_M, REACH_Y_M, Pair, given_pairs, searched_pairs
-from skills.cable.laying_out import Ends, Pull, best_places
+from skills.cable.laying_out import Ends, Pull, best_places, crossings_of
 from skills.cable.policies import HoldAt
 from skills.motion.arm_skill import MOTION_REASONS, ArmSkill, MotionSteps
 from skills.motion.goals import above
@@ -32,6 +32,12 @@ MOST_ENDS = 8
 # find that two arms are in each other's way takes seconds. Places that lie this near are alike.
 MOST_PULLS, MOST_TRIES, ALIKE_M = 2, 2, 0.1
 
+NOWHERE = MotionFailure(
+    "motion.unreachable", "ik", "no two sites around the knot are apart and in reach"
+)
+REFUSED = MotionFailure(
+    "pull.refused", "plan", "wherever the hands could go, more crossings than now should be left"
+)
 UP_M = (np.array([0.0, 0.0, CLEARANCE_M]),)
 
 
@@ -60,13 +66,16 @@ class DilateKnot(ArmSkill):
     The cable slides through the cage, so that the loop grows and the tail is drawn out of it,
     while the pinch keeps other knots in series from running together.
 
-    SUCCESS: both hands held the cable, moved apart and laid it down.
-    FAILURE: `knot.none` when there is no knot to dilate; a motion reason when no pair of
+    SUCCESS: both hands held the cable, moved apart and laid it down; `predicted` is how many
+        crossings should be left where the hands have gone.
+    FAILURE: `knot.none` when there is no knot to dilate; `pull.refused` when wherever the hands
+        could go, more crossings than now should be left; a motion reason when no pair of
         sites suits both arms; `grasp.missed` when a hand closed on nothing.
     stop(): arms come to rest; a held cable stays held.
     """
 
-    REASONS = MOTION_REASONS | {"knot.none", "grasp.missed"}
+    OUT = {"predicted": Port(int, "crossings that should be left")}
+    REASONS = MOTION_REASONS | {"knot.none", "pull.refused", "grasp.missed"}
 
     def run(
         self,
@@ -102,7 +111,8 @@ class DilateKnot(ArmSkill):
         failed = failed or risen
         if failed is not None:
             return failure(failed.code, failed.text, stage=failed.stage)
-        return success()
+        cage_m, pinch_m = (self._arms.tcp_position(arm)[:2] for arm in hands)
+        return success(predicted=crossings_of(pull.predicted((cage_m, pinch_m))))
 
     def _reach_down(
         self, frame: CameraFrame, trace: Trace, ranked: Sequence[Pair], planned: bool
@@ -113,9 +123,7 @@ class DilateKnot(ArmSkill):
             How the cable is held, or why the last pair that was tried failed.
         """
         grips = self._grips(frame, trace, ranked, planned)
-        failed = MotionFailure(
-            "motion.unreachable", "ik", "no two sites around the knot are apart and in reach"
-        )
+        failed = NOWHERE
         while True:
             found = yield from self._worker.run(next, grips, failed)
             if isinstance(found, MotionFailure):
@@ -129,9 +137,12 @@ class DilateKnot(ArmSkill):
 
     def _grips(
         self, frame: CameraFrame, trace: Trace, ranked: Sequence[Pair], planned: bool
-    ) -> Iterator["_Grip"]:
-        """Yield ways to hold that both hands can come down to, those first that can go on."""
-        without = list[_Grip]()
+    ) -> Iterator["_Grip | MotionFailure"]:
+        """Yield ways to hold that both hands can come down to, those first that can go on.
+
+        The last is a failure where none of them can go anywhere without making more crossings.
+        """
+        without, refused = list[_Grip](), 0
         for pair in ranked:
             goals = (_goal(frame, pair[0]), _goal(frame, pair[1]))
             hands = self._arms.assign((above(goals[0], CLEARANCE_M), above(goals[1], CLEARANCE_M)))
@@ -143,11 +154,16 @@ class DilateKnot(ArmSkill):
                 continue
             left_first = hands[0] == "left"
             ends_m = tuple(best_places(grip.pull, left_first, MOST_ENDS))
-            without.append(replace(grip, ends_m=ends_m))
-            yield from self._with_places(without[-1])
-            if len(without) == MOST_PULLS:
+            if not ends_m and grip.pull.pinch_m > grip.pull.cage_m:
+                refused += 1
+            else:
+                without.append(replace(grip, ends_m=ends_m))
+                yield from self._with_places(without[-1])
+            if len(without) + refused == MOST_PULLS:
                 break
         yield from without
+        if refused and not without:
+            yield REFUSED
 
     def _with_places(self, grip: "_Grip") -> Iterator["_Grip"]:
         """Yield the way to hold with the best places to go to that both hands can make."""

@@ -6,12 +6,17 @@ from executive.core.outcome import success
 from executive.core.skill import In, Port, Skill, SkillRun
 from executive.core.work import Worker
 from perception.cable.interfaces import CableVision
-from perception.cable.types import Crossing, Knot, Trace
+from perception.cable.types import Crossing, Endpoint, Knot, Trace
 from perception.camera import CameraFrame
+from skills.cable.connectors import through_connectors
+
+_Reading = tuple[Trace, tuple[Crossing, ...]]
 
 
 class FindKnots(Skill):
     """Analyse the topology of a trace.
+
+    A strand across a connector is a crossing that no trace shows, and that may make the knot.
 
     SUCCESS: `knots` in the order of the trace, maybe none, and P(knotted).
     """
@@ -30,8 +35,21 @@ class FindKnots(Skill):
         frame: Annotated[CameraFrame, In("overhead frame")],
         trace: Annotated[Trace, In("path of the cable")],
         crossings: Annotated[tuple[Crossing, ...], In("crossings of the trace")],
+        endpoints: Annotated[tuple[Endpoint, ...], In("ends of the cable")] = (),
+        doubt_connectors: Annotated[bool, In("count strands that lie across connectors")] = False,
     ) -> SkillRun:
         """Simplify the diagram, find knots, carry probabilities through."""
-        knots = yield from self._worker.run(self._vision.knots, frame.image, (trace,), crossings)
-        probability = self._vision.knotted_probability((trace,), crossings)
+        counted = (trace, crossings)
+        if doubt_connectors:
+            counted = through_connectors(trace, crossings, endpoints)
+        knots, probability = yield from self._worker.run(
+            self._analysed, frame, (trace, crossings), counted
+        )
         return success(knots=knots, knotted_probability=probability)
+
+    def _analysed(
+        self, frame: CameraFrame, seen: _Reading, counted: _Reading
+    ) -> tuple[tuple[Knot, ...], float]:
+        """Return knots where they are seen, and the belief in any with all that counts."""
+        knots = self._vision.knots(frame.image, (seen[0],), seen[1])
+        return knots, self._vision.knotted_probability((counted[0],), counted[1])

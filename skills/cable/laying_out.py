@@ -101,9 +101,14 @@ class Pull:
         return TAIL_COST * left_m + (LEFT_COST if left_m > 0.0 else 0.0)
 
 
+def crossings_of(line_m: Floats) -> int:
+    """Return how often a line crosses itself."""
+    return len(self_intersections(line_m)[0])
+
+
 def tangle_cost(line_m: Floats) -> float:
     """Return how hard a line is to understand: its crossings, and what lies close beside itself."""
-    crossings = len(self_intersections(line_m)[0])
+    crossings = crossings_of(line_m)
     gaps_m = np.linalg.norm(line_m[:, None] - line_m[None], axis=2)
     apart = np.abs(np.subtract.outer(np.arange(len(line_m)), np.arange(len(line_m)))) > 4
     return crossings + BESIDE_COST * float(((gaps_m < BESIDE_M) & apart).sum()) / 2.0
@@ -153,17 +158,23 @@ def best_places(pull: Pull, left_holds_cage: bool, count: int) -> Sequence[Ends]
     Args:
         pull: What is held.
         left_holds_cage: Whether the left hand does.
-        count: How many to return; none where the pinch is not farther along than the cage.
+        count: How many to return.
+
+    Returns:
+        Places that should leave no more crossings than there are; none where all leave more, or
+        where the pinch is not farther along than the cage.
     """
     if pull.pinch_m <= pull.cage_m:
         return []
-    ends = list(places(left_holds_cage))
+    ends, present = list(places(left_holds_cage)), crossings_of(pull.line_m)
     least = np.array([pull.left_cost(pair) for pair in ends])
     costs = dict[int, float]()
     for k in np.argsort(least, kind="stable").tolist():
         # Crossings only add to what is left of the tail: no later place can be among the best.
         if len(costs) >= count and least[k] > sorted(costs.values())[count - 1]:
             break
-        costs[k] = pull.cost(ends[k])
+        line_m = pull.predicted(ends[k])
+        if crossings_of(line_m) <= present:
+            costs[k] = tangle_cost(line_m) + pull.left_cost(ends[k])
     best = [ends[k] for k in sorted(costs, key=lambda k: (costs[k], k))]
     return [pair for pair in best if pull.slides(pair) == pull.slides(best[0])][:count]

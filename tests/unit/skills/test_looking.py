@@ -6,7 +6,8 @@ from executive.core.work import InlineWorker
 from perception.cable.orientation import reversed_crossings, reversed_trace
 from perception.cable.types import Endpoint, Knot, Trace, TraceEnd, TraceStart
 from perception.fresh_camera import FrozenError
-from skills.cable.account_for_cable import AccountForCable, with_connectors
+from skills.cable.account_for_cable import AccountForCable
+from skills.cable.connectors import with_connectors
 from skills.cable.detect_endpoints import DetectEndpoints
 from skills.cable.find_start_points import FindStartPoints
 from skills.cable.observe_workspace import ObserveWorkspace

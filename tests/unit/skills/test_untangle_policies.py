@@ -132,7 +132,7 @@ class Flown:
     reason: str
 
 
-def flown(*looks, arms=None, camera=None, vision_of=ScriptedVision, **inputs):
+def flown(*looks, arms=None, camera=None, vision_of=ScriptedVision, timeout_s=60.0, **inputs):
     """Run the mission over scripted looks; return outcome, claim and what the arms did."""
     mission = load_mission(str(MISSION), skills=skills(), types=port_types())
     script, cell = vision_of(*looks), Cell()
@@ -149,7 +149,7 @@ def flown(*looks, arms=None, camera=None, vision_of=ScriptedVision, **inputs):
     }
     tree = build(mission, devices=devices, clock=cell.clock, inputs=inputs)
     acts = Acts(tree)
-    result = Runner(tree, cell, tick_hz=10.0, observers=(acts,), timeout_s=60.0).run()
+    result = Runner(tree, cell, tick_hz=10.0, observers=(acts,), timeout_s=timeout_s).run()
     claim = tree.outputs().get("claim")
     return Flown(result.outcome, claim, str(result.reason)), acts.names, vision
 
@@ -198,6 +198,18 @@ def test_an_end_that_gives_no_start_is_freed_where_traces_need_one():
     assert flown(Look(start=False), DONE, policy="tusk")[1] == ["perturb_endpoint"]
 
 
+def test_a_second_look_that_is_less_sure_leads_to_a_move_and_not_to_a_claim():
+    doubting = replace(DONE, knotted=0.4)
+    result, acts, _ = flown(DONE, doubting, DONE, policy="default")
+    assert (result.claim.untangled, acts) == (True, ["uncover_end"])
+    assert flown(DONE, doubting, DONE, policy="tusk")[1] == []
+
+
+def test_a_mission_that_comes_to_no_end_says_what_it_believes():
+    unclear = flown(Look(ends=0), policy="no_interactive", timeout_s=900.0)[0]
+    assert "cannot tell" in unclear.reason
+
+
 def test_who_goes_by_belief_traces_from_an_end_among_strands_all_the_same():
     result, acts, _ = flown(replace(DONE, start=False), policy="default")
     assert (result.claim.untangled, acts) == (True, [])
@@ -209,7 +221,7 @@ def test_without_interactive_perception_it_only_looks_again():
 
 
 def test_a_mission_without_cable_in_view_says_so():
-    result, acts, _ = flown(Look(ends=0, pieces=False))
+    result, acts, _ = flown(Look(ends=0, pieces=False), timeout_s=900.0)
     assert result.outcome is not MissionOutcome.SUCCESS
     assert "cable.gone" in result.reason
     assert acts == []
