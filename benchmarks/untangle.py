@@ -136,8 +136,9 @@ def _of_policy(policy: str, trials: Sequence[Trial]) -> list[Row]:
     """Return what holds for all cables that were untangled in one way."""
     n, samples = len(trials), sum(t.samples for t in trials)
     ours, name = policy == "default", "" if policy == "default" else f"{policy}_"
+    known = [(t.sim_s, t.cpu_s) for t in trials if t.cpu_s is not None]
     rest_s = [t.wall_s - t.seeing_s - t.thinking_s - t.acting_s for t in trials]
-    return [
+    found = [
         share(f"{name}verified", sum(t.verified for t in trials), n, ">= 0.95" if ours else ""),
         share(
             f"{name}false_claims",
@@ -157,3 +158,10 @@ def _of_policy(policy: str, trials: Sequence[Trial]) -> list[Row]:
         median(f"{name}acting_s", [t.acting_s for t in trials], "s"),
         median(f"{name}physics_and_opening_s", rest_s, "s"),
     ]
+    if known:
+        ratios = [sim_s / cpu_s for sim_s, cpu_s in known]
+        found += [
+            median(f"{name}cpu_s", [cpu_s for _, cpu_s in known], "s"),
+            median(f"{name}robot_over_cpu", ratios, "1", ">= 3" if ours else ""),
+        ]
+    return found

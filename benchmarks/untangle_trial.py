@@ -24,6 +24,15 @@ from executive.inspector.times import node_times
 
 # Who is killed after so much time here has hung.
 LONGEST_S = 10_800.0
+# The mission as from the command line; says at last what it has cost of processors' time.
+MISSION = """
+import sys, time
+from executive.cli.main import main
+try:
+    main()
+finally:
+    print(f"\\n{time.process_time()}", file=sys.stderr)
+"""
 # How many knots the cables of a sort have; one with a knot by name has one.
 KNOTS = {"C3": 2}
 # Skills by what they take their time for.
@@ -85,6 +94,7 @@ class Trial(BaseModel):
         samples: Moments at which joints were looked at.
         broken: Of these, with a joint beyond a limit.
         touching: Of these, with two bodies that touch.
+        cpu_s: What the process cost of processors' time from its start on; None where not known.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -105,6 +115,7 @@ class Trial(BaseModel):
     samples: int
     broken: int
     touching: int
+    cpu_s: float | None = None
 
     @property
     def verified(self) -> bool:
@@ -119,7 +130,7 @@ def tried(wanted: Wanted, folder: Path) -> Trial:
         RuntimeError: The mission could not be run; with what it said.
     """
     file = folder / f"{wanted.name()}.mcap"
-    command = [sys.executable, "-c", "from executive.cli.main import main; main()"]
+    command = [sys.executable, "-c", MISSION]
     command += ["run", "untangle", "--json", "--overwrite", "--record", str(file)]
     command += ["--seed", str(wanted.seed), *wanted.settings()]
     environment = {**os.environ, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
@@ -129,7 +140,9 @@ def tried(wanted: Wanted, folder: Path) -> Trial:
     if answer.returncode not in (0, 1):
         told = answer.stderr[-2000:] or answer.stdout[-2000:]
         raise RuntimeError(f"{wanted.name()}: exit code {answer.returncode}\n{told}")
-    return trial_of(wanted, RunReport.model_validate_json(answer.stdout), Recording.open(file))
+    report, cpu_s = RunReport.model_validate_json(answer.stdout), answer.stderr.split()[-1]
+    trial = trial_of(wanted, report, Recording.open(file))
+    return trial.model_copy(update={"cpu_s": float(cpu_s)})
 
 
 def trial_of(wanted: Wanted, report: RunReport, recording: Recording) -> Trial:

@@ -146,6 +146,10 @@ def test_rows_follow_the_table_of_the_thesis():
     assert found["C1_failure_7"].value == pytest.approx(1 / 3)
     assert found["false_claims"].value == 0.0
     assert found["physics_and_opening_s"].value == 40.0
+    assert "robot_over_cpu" not in found
+    timed = rows([trial(0), trial(1).model_copy(update={"cpu_s": 60.0})])
+    ratio = next(row for row in timed if row.name == "robot_over_cpu")
+    assert (ratio.value, ratio.n) == (2.0, 1)
 
 
 def test_no_run_is_started_when_the_time_is_over(tmp_path):
