@@ -1,19 +1,12 @@
 """PyBullet, imported where it is needed and without the greeting that it writes."""
 
-import os
-import sys
 from typing import Any
+
+from executive.core.descriptors import standard_error_dropped
 
 
 def import_pybullet() -> Any:
     """Import PyBullet without the greeting that it writes to standard error."""
-    sys.stderr.flush()
-    stderr, nowhere = os.dup(2), os.open(os.devnull, os.O_WRONLY)
-    os.dup2(nowhere, 2)
-    try:
+    with standard_error_dropped():
         import pybullet
-    finally:
-        os.dup2(stderr, 2)
-        os.close(stderr)
-        os.close(nowhere)
     return pybullet

@@ -1,5 +1,7 @@
 """A video of the table cell in a recorded run, from beyond the table."""
 
+from collections.abc import Iterable
+from itertools import chain
 from pathlib import Path
 
 import cv2
@@ -7,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from executive.app.scenes import scene_frames
+from executive.core.descriptors import standard_error_dropped
 from executive.core.errors import InputError, RecordingError
 from executive.engine.recording.reader import Recording
 from perception.camera import CameraModel
@@ -49,28 +52,34 @@ def write_video(recording: Path, file: Path) -> None:
     if file.suffix not in CODECS:
         known = ", ".join(CODECS)
         raise InputError(f"--video {file}: got ending {file.suffix!r}; expected one of: {known}")
-    run = Recording.open(recording)
-    film = cv2.VideoWriter(
-        str(file), cv2.VideoWriter.fourcc(*CODECS[file.suffix]), FRAMES_HZ, SIZE_PX
-    )
-    if not film.isOpened():
-        raise InputError(f"--video {file}: cannot be written; expected a folder that is there")
+    frames = (frame for frame in scene_frames(Recording.open(recording)) if frame.cables_m)
+    first = next(frames, None)
+    if first is None:
+        raise RecordingError(f"{recording}: nothing to film; got no cable; expected a table cell")
+    film = _opened(file)
     try:
-        _film(run, film)
+        _film(chain([first], frames), film)
     finally:
         film.release()
 
 
-def _film(run: Recording, film: cv2.VideoWriter) -> None:
+def _opened(file: Path) -> cv2.VideoWriter:
+    code = cv2.VideoWriter.fourcc(*CODECS[file.suffix])
+    with standard_error_dropped():  # it warns of codes that it then replaces
+        film = cv2.VideoWriter(str(file), code, FRAMES_HZ, SIZE_PX)
+    if not film.isOpened():
+        raise InputError(f"--video {file}: cannot be written; expected a folder that is there")
+    return film
+
+
+def _film(frames: Iterable[SceneFrame], film: cv2.VideoWriter) -> None:
     rng, camera = np.random.default_rng(0), oblique_camera()
     renderer = Renderer(camera, TABLE_SIZE_M, rng)
-    due_s, shown = 0.0, 0
-    for frame in scene_frames(run):
-        if frame.cable_m is not None and frame.time_s >= due_s:
+    due_s = 0.0
+    for frame in frames:
+        if frame.time_s >= due_s:
             film.write(_drawn(frame, camera, renderer, rng))
-            due_s, shown = frame.time_s + SPEED / FRAMES_HZ, shown + 1
-    if not shown:
-        raise RecordingError(f"{run.path}: nothing to film; got no cable; expected a table cell")
+            due_s = frame.time_s + SPEED / FRAMES_HZ
 
 
 def oblique_camera() -> CameraModel:

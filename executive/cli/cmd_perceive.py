@@ -31,7 +31,7 @@ def _kinds() -> None:
 
 @perceive.command()
 def cable(
-    images: Annotated[list[Path], typer.Argument(metavar="IMAGE...", help="Image files.")],
+    images: Annotated[list[Path], typer.Argument(metavar="IMAGE", help="Image files.")],
     start: Annotated[
         str | None,
         typer.Option(metavar="X,Y", help="Pixel to start tracing at; found when left out."),

@@ -37,7 +37,8 @@ def data(
     images: Annotated[int, typer.Option(min=1, help="How many images, or samples.")] = 100,
     seed: Annotated[int, typer.Option(min=0, help="Of every image.")] = 0,
     family: Annotated[
-        str | None, typer.Option(help="Curves: random, parallel, dense, coil, tight or settled.")
+        str | None,
+        typer.Option(help="Curves: random, parallel, dense, coil, hairpin, tight or settled."),
     ] = None,
     style: Annotated[str | None, typer.Option(help="Looks: photograph, shaded or plain.")] = None,
     cables: Annotated[str, typer.Option(metavar="N[-N]", help="Cables in an image.")] = "1-3",

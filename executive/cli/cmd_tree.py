@@ -1,18 +1,34 @@
 """`cellwright tree`: a tree as text, or as a graph for Graphviz."""
 
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 from rich.console import Console
 from rich.text import Text
 from rich.tree import Tree
+from typer.core import TyperGroup
 
 from executive.app.catalogue import port_types, skills
 from executive.cli.cmd_skills import port_line
 from executive.engine.loading.expansion import ExpandedNode, expand
 from executive.engine.loading.loader import Program, load_program
 
-tree = typer.Typer(help="Show a tree with its subtrees.", no_args_is_help=True)
+
+class _ShowByDefault(TyperGroup):
+    """What is no subcommand is the tree to show."""
+
+    def resolve_command(self, ctx: Any, args: list[str]) -> Any:
+        """Return a subcommand with its arguments, as the base class does."""
+        if args and args[0] not in self.commands and not args[0].startswith("-"):
+            args = [show.__name__, *args]
+        return super().resolve_command(ctx, args)
+
+
+tree = typer.Typer(
+    cls=_ShowByDefault,
+    help="Show a tree with its subtrees: cellwright tree NAME.",
+    no_args_is_help=True,
+)
 
 _TreeName = Annotated[str, typer.Argument(help="Name of a tree or mission, or its YAML file.")]
 

@@ -93,7 +93,17 @@ class _LazyCommands(TyperGroup):
             holder.add_typer(command, name=cmd_name, rich_help_panel=panel)
         else:
             holder.command(cmd_name, rich_help_panel=panel)(command)
-        return typer.main.get_group(holder).commands[cmd_name]
+        return _with_flowing_help(typer.main.get_group(holder).commands[cmd_name])
+
+
+def _with_flowing_help(command: Any) -> Any:
+    """Join the lines of each paragraph of a command's help, which is broken where it is shown."""
+    if command.help:
+        paragraphs = command.help.split("\n\n")
+        command.help = "\n\n".join(" ".join(each.split()) for each in paragraphs)
+    for each in getattr(command, "commands", {}).values():
+        _with_flowing_help(each)
+    return command
 
 
 app = typer.Typer(

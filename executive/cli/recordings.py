@@ -86,4 +86,4 @@ def recording_argument(metavar: str, told: str) -> Any:
 
 
 RunArgument = Annotated[Path, recording_argument("RUN", "Recording of a run")]
-RunsArgument = Annotated[list[Path], recording_argument("RUN...", "Recordings of runs")]
+RunsArgument = Annotated[list[Path], recording_argument("RUN", "Recordings of runs")]

@@ -7,18 +7,24 @@ from typing import Generic, TypeVar
 from executive.core.errors import InputError
 
 T = TypeVar("T")
+_MOST_LISTED, _NEAREST = 50, 8
 
 
 def closest(name: str, known: list[str]) -> str:
     """Return `did you mean 'x'? (known: ...)` for a message about an unknown name.
 
-    Without a match only the known names are left: `known: ...`.
+    Without a match only the known names are left: `known: ...`. Of very many, some are named.
     """
     import difflib  # only for those who mistype
 
     match = difflib.get_close_matches(name, known, n=1, cutoff=0.5)
-    names = f"known: {', '.join(sorted({*known})) or 'none'}"
-    return f"did you mean {match[0]!r}? ({names})" if match else names
+    names, more = sorted({*known}), ""
+    if len(names) > _MOST_LISTED:
+        near = difflib.get_close_matches(name, names, n=_NEAREST, cutoff=0.3)
+        more = f" and {len(names) - len(near or names[:_NEAREST])} more"
+        names = sorted(near) or names[:_NEAREST]
+    listed = f"known: {', '.join(names) or 'none'}{more}"
+    return f"did you mean {match[0]!r}? ({listed})" if match else listed
 
 
 class Registry(Generic[T]):

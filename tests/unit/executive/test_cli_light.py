@@ -1,6 +1,7 @@
 """What may be loaded before a command needs it: nothing heavy."""
 
 import json
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -48,6 +49,18 @@ def test_looking_at_things_loads_no_simulator_planner_or_network(arguments):
     code, loaded = json.loads(ended.stderr.splitlines()[-1])
     assert (code, loaded) == (0, []), ended.stderr
     assert ended.stdout
+
+
+def test_help_breaks_lines_where_they_are_shown():
+    cellwright = Path(sys.executable).with_name("cellwright")
+    told = subprocess.run(
+        [cellwright, "run", "--help"],
+        capture_output=True,
+        text=True,
+        check=True,
+        env={**os.environ, "COLUMNS": "200"},
+    ).stdout
+    assert "a second one stops the arms at once. Ctrl-Z pauses the mission;" in told
 
 
 def test_a_bug_of_ours_exits_with_3_not_with_1(monkeypatch, capsys):
