@@ -29,6 +29,10 @@ LIMITS_BYTES = (2_000, 20_000, 60_000, 120_000)
 _WHOLE_BYTES = 190_000
 _CAMPAIGN = ("campaign", "works.yaml", "--out", "out", "--workers", "1")
 _RUNS = 24
+_TOLD_AT_RESUME = {
+    "has ended": "says that it has ended",
+    "no checkpoint yet": "says that there is no checkpoint yet",
+}
 
 
 def mission_killed(folder: Path, rng: np.random.Generator) -> Answer:
@@ -52,9 +56,9 @@ def mission_killed(folder: Path, rng: np.random.Generator) -> Answer:
     report = json.loads(answer.stdout.strip().splitlines()[-1])
     lost = max(0, seen - kept)
     if answer.returncode == REFUSED:
-        for told in ("has ended", "no checkpoint yet"):
+        for told, did in _TOLD_AT_RESUME.items():
             if told in report["reason"]:
-                return Answer(lost == 0, f"says that it {told}", lost)
+                return Answer(lost == 0, did, lost)
         return Answer(False, str(report["reason"]), lost)
     held = report["outcome"] == "success" and readable_ticks(again) >= int(report["ticks"]) > 0
     return Answer(held and lost == 0, "went on from the last checkpoint to its end", lost)
