@@ -1,5 +1,6 @@
 """JSON files that are read into models, and what pydantic finds wrong, in words."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TypeVar
 
@@ -38,7 +39,11 @@ def read_json(path: Path, model: type[Model], what: str) -> Model:
 
 def faults_of(error: ValidationError) -> str:
     """Return what is wrong, the first few faults of it."""
-    details = error.errors(include_url=False)
+    return faults_in_words(error.errors(include_url=False))
+
+
+def faults_in_words(details: Sequence[ErrorDetails]) -> str:
+    """Return the first few of pydantic's faults in words."""
     more = len(details) - _SHOWN
     shown = [_in_words(detail) for detail in details[:_SHOWN]]
     return "; ".join(shown + ([f"and {more} more"] if more > 0 else []))

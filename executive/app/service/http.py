@@ -20,6 +20,7 @@ from executive.app.service.messages import (
     TickView,
 )
 from executive.core.errors import CellwrightError, InputError
+from executive.core.json_files import faults_in_words
 
 MOST_LISTENERS = 32
 POLL_S = 0.1
@@ -168,13 +169,17 @@ async def _refused(_: Request, error: Exception) -> Response:
     return JSONResponse({"error": str(error)}, code)
 
 
-async def _out_of_place(_: Request, error: Exception) -> Response:
+async def _out_of_place(request: Request, error: Exception) -> Response:
     """Say in our form what the framework refuses: addresses, methods, bodies that are no text."""
     assert isinstance(error, HTTPException)
-    return JSONResponse({"error": error.detail}, error.status_code, error.headers)
+    asked = f"{request.method} {request.url.path}"
+    told = f"{error.detail}: {asked}; GET /openapi.json tells what there is"
+    return JSONResponse({"error": told}, error.status_code, error.headers)
 
 
-async def _malformed(_: Request, error: Exception) -> Response:
+async def _malformed(request: Request, error: Exception) -> Response:
     assert isinstance(error, RequestValidationError)
-    found = (f"{'.'.join(map(str, one['loc']))}: {one['msg']}" for one in list(error.errors())[:5])
-    return JSONResponse({"error": "; ".join(found)}, 422)
+    told = faults_in_words(error.errors())
+    if request.method == "POST" and "json" not in request.headers.get("content-type", ""):
+        told += "; try the header content-type: application/json"
+    return JSONResponse({"error": told}, 422)

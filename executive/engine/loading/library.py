@@ -255,4 +255,6 @@ def _says(file: Path, kind: str) -> bool:
     """Return whether a file looks like a document of a kind; for messages, so without parsing."""
     lines = file.read_text(encoding="utf-8", errors="replace").splitlines()
     keys = {line.partition(":")[0] for line in lines}
-    return kind in keys and not (kind == "cell" and "mission" in keys)  # a mission names its cell
+    # A mission names its cell, a campaign its mission.
+    named_elsewhere = {"cell": "mission", "mission": "campaign"}
+    return kind in keys and named_elsewhere.get(kind) not in keys

@@ -3,7 +3,7 @@
 import pytest
 from toy_language import toy_skills, toy_types
 
-from executive.core.errors import DocumentError
+from executive.core.errors import DocumentError, InputError
 from executive.engine.language.sources import read_source
 from executive.engine.loading.library import Library, Shelf
 from executive.engine.loading.loader import check_files, load_mission
@@ -164,6 +164,14 @@ def test_unknown_cell_is_answered_with_the_closest(mission_folder):
     file.write_text(MISSION.replace("cell: bench", "cell: bnch"))
     with pytest.raises(DocumentError, match=r"tidy.yaml:4:7: unknown cell 'bnch'.*'bench'"):
         load(file, mission_folder)
+
+
+def test_campaigns_are_not_named_as_missions(mission_folder):
+    missions = mission_folder / "missions"
+    (missions / "often.yaml").write_text("campaign: often\nformat: 1\nmission: tidy\n")
+    with pytest.raises(InputError, match=r"unknown mission 'oftn'.*tidy") as refused:
+        load("oftn", mission_folder)
+    assert "often" not in str(refused.value)
 
 
 def test_check_takes_files_of_every_kind_and_reports_all_faults_once(mission_folder):
