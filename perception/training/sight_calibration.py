@@ -64,8 +64,7 @@ def judge(sight: Sight, seed: int, scenes: int) -> Judged:
         clear = truth.clear_ends(NEAR_WIDTHS)
         wanted += int(clear.sum())
         for end in seen.endpoints:
-            gaps = np.linalg.norm(truth.ends - end.position_px, axis=1)
-            near = gaps < NEAR_WIDTHS * truth.width_px
+            near = truth.near_ends(end.position_px, NEAR_WIDTHS)
             # Nobody asks for ends that are hidden or at the border.
             if not near.any() or clear[near].any():
                 beliefs.append(end.probability)

@@ -73,6 +73,11 @@ class SightTruth:
         """Width that most of the cable in view has; that of the scene where there is none."""
         return float(np.median(self.widths_px[self.cable])) if self.cable.any() else self.width_px
 
+    def near_ends(self, place_px: Floats, widths: float) -> Bools:
+        """Say which ends lie within some cable widths of a place, shape (N,)."""
+        near: Bools = np.linalg.norm(self.ends - place_px, axis=1) < widths * self.width_px
+        return near
+
     def clear_ends(self, border_widths: float) -> Bools:
         """Say which ends can be seen and are not near to the border, shape (N,)."""
         last = np.array(self.image.shape[::-1]) - 1
@@ -81,14 +86,23 @@ class SightTruth:
         return clear
 
 
-def draw_truth(rng: np.random.Generator, size_px: tuple[int, int]) -> SightTruth:
-    """Draw a scene of cables of any width that fills an image (height, width)."""
+def draw_truth(
+    rng: np.random.Generator, size_px: tuple[int, int], hairpins: float = 0.0
+) -> SightTruth:
+    """Draw a scene of cables of any width that fills an image.
+
+    Args:
+        rng: Source of all randomness.
+        size_px: (height, width) of the image.
+        hairpins: Share of cables that are seen where they turn back tightly.
+    """
     width_px = float(np.exp(rng.uniform(np.log(NARROWEST_PX), np.log(WIDEST_PX))))
     config = SceneConfig(
         extent=max(size_px) / width_px * rng.uniform(0.75, 1.25),
         size_px=size_px,
         narrowest_px=width_px,
         widest_px=width_px,
+        hairpins=hairpins,
     )
     if rng.random() < EMPTY:
         beyond = np.array([[-200.0, -200.0], [-100.0, -200.0]])

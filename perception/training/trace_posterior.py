@@ -1,8 +1,9 @@
 """Fit the evidence of traces: `python -m perception.training.trace_posterior FOLDER`.
 
-A trained tracer follows cables of drawn scenes from ends in view. Each scene gives the features
-of all traces that were found and says which are right; the weights that make the right answers
-likeliest (conditional logit, with a prior that they are small) go into `posterior.json`.
+First what speaks for ends, see `perception.training.end_evidence`. Then a trained tracer follows
+cables of drawn scenes from ends in view. Each scene gives the features of all traces that were
+found and says which are right; the weights that make the right answers likeliest (conditional
+logit, with a prior that they are small) go into `posterior.json`.
 """
 
 import argparse
@@ -15,18 +16,23 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import minimize
 
+from perception.cable.eyes import LEAST_END, Eye
 from perception.cable.following import followed_share
-from perception.cable.observation import Observe
 from perception.cable.parts import EYES
 from perception.cable.tracers.evidence import FEATURES, NONE_FEATURES, doubts, evidence
 from perception.cable.tracers.hypotheses import hypotheses
+from perception.cable.tracers.outward import EndWeights, judged
 from perception.cable.tracers.posterior import FILE, Weights, shares, stacked, view_at
 from perception.cable.tracers.search import SearchConfig
 from perception.cable.tracers.steps import StepModel
 from perception.cable.tracers.survey import survey
 from perception.cable.types import Endpoint, TraceEnd
-from perception.models.frames import Floats
+from perception.models.frames import Floats, scale_image
+from perception.models.tracer_crop import WIDTH
 from perception.training.calibration import expected_calibration_error, selective_error
+from perception.training.end_evidence import FIT_SEED as END_FIT_SEED
+from perception.training.end_evidence import MEASURE_SEED as END_MEASURE_SEED
+from perception.training.end_evidence import end_figures, fit_ends, seen_ends
 from perception.training.scenes import Scene, SceneConfig, make_scene
 
 SEED, HELD_OUT_SEED = 970_001, 980_001
@@ -38,8 +44,10 @@ START_NODES, DIRECTION_NODES = 16, 8
 START_ERROR = 0.1
 # A strand nearer than this to an end hides it [widths].
 HIDDEN = 1.5
-# What is known of ends: all of them, one of each cable, or only the start.
-KNOWN = {"all": 0.5, "one_each": 0.3, "start": 0.2}
+# What is known of ends: what is seen of them, all, one of each cable, or only the start.
+KNOWN = {"seen": 0.4, "all": 0.25, "one_each": 0.2, "start": 0.15}
+# Share of cables that are seen where they turn back tightly.
+HAIRPINS = 0.15
 PRIOR = 0.02
 # What searches believe speaks for a trace, all else against it; doubt speaks for none.
 FOR, AGAINST, EITHER = (0.0, None), (None, 0.0), (None, None)
@@ -59,7 +67,7 @@ class TraceTask:
         width_px: Its width.
         leaves: Whether it leaves the view.
         start_px: First points, with small errors.
-        endpoints: Ends that are known.
+        endpoints: Ends that are known; None for those that are seen.
     """
 
     scene: Scene
@@ -67,7 +75,7 @@ class TraceTask:
     width_px: float
     leaves: bool
     start_px: Floats
-    endpoints: tuple[Endpoint, ...]
+    endpoints: tuple[Endpoint, ...] | None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -93,7 +101,12 @@ def draw_task(rng: np.random.Generator) -> TraceTask:
 def _scene_config(rng: np.random.Generator) -> SceneConfig:
     extent = float(np.exp(rng.uniform(*np.log(EXTENTS))))
     widest = min(WIDTHS_PX[1], LARGEST_PX / extent)
-    return SceneConfig(extent, narrowest_px=WIDTHS_PX[0], widest_px=max(widest, WIDTHS_PX[0]))
+    return SceneConfig(
+        extent,
+        narrowest_px=WIDTHS_PX[0],
+        widest_px=max(widest, WIDTHS_PX[0]),
+        hairpins=HAIRPINS,
+    )
 
 
 def _end_is_seen(scene: Scene, lines: Sequence[Floats], number: int) -> bool:
@@ -136,7 +149,7 @@ def _task(
         scene.cables[chosen % half].width_px,
         len(visible) < len(line),
         first + error_px,
-        tuple(ends),
+        None if known == "seen" else tuple(ends),
     )
 
 
@@ -156,24 +169,29 @@ def is_right(task: TraceTask, points_px: Floats, end: TraceEnd) -> bool:
     return followed_share(truth, points_px, 1.3 * width_px, 5.0 * width_px) >= 1.0
 
 
-def examples(model: StepModel, observe: Observe, seed: int, wanted: int) -> Iterator[Example]:
-    """Yield what searches found in scenes of a seed, as they are observed."""
+def examples(
+    model: StepModel, eye: Eye, ends: EndWeights, seed: int, wanted: int
+) -> Iterator[Example]:
+    """Yield what searches found in scenes of a seed, as an eye sees them."""
     for number in range(wanted):
-        rng = np.random.default_rng([seed, number])
-        task = draw_task(rng)
-        view = view_at(observe, task.scene.image, task.start_px)
+        task = draw_task(np.random.default_rng([seed, number]))
+        image = task.scene.image
+        view = view_at(eye.observe, image, task.start_px)
         if view is None:
             continue
-        found = survey(
-            model, SearchConfig(), task.scene.image, view, [task.start_px], task.endpoints
-        )
+        known = task.endpoints
+        if known is None:
+            scaled = scale_image(image, view.width_px, WIDTH, model.zoom)
+            told = judged(model, scaled, eye.endpoints(image), ends)
+            known = tuple(end for end in told if end.probability >= LEAST_END)
+        found = survey(model, SearchConfig(), image, view, [task.start_px], known)
         candidates = hypotheses(found, 0)
         right = [is_right(task, found.image.back(one.points), one.end) for one in candidates]
         yield Example(evidence(found, 0, candidates), doubts(found, 0), np.array(right, dtype=bool))
 
 
-def fit(seen: Sequence[Example]) -> Weights:
-    """Return the likeliest weights."""
+def fit(seen: Sequence[Example], ends: EndWeights | None = None) -> Weights:
+    """Return the likeliest weights beside those of ends."""
     count, each = len(FEATURES), [_stacked(one) for one in seen]
 
     def loss(flat: Floats) -> tuple[float, Floats]:
@@ -191,6 +209,7 @@ def fit(seen: Sequence[Example]) -> Weights:
     return Weights(
         trace=dict(zip(FEATURES, flat[:count], strict=True)),
         none=dict(zip(NONE_FEATURES, flat[count:], strict=True)),
+        ends=ends or EndWeights(),
     )
 
 
@@ -202,8 +221,8 @@ def _stacked(one: Example) -> tuple[Floats, NDArray[np.bool_]]:
 
 def figures(seen: Sequence[Example], weights: Weights) -> dict[str, float]:
     """Return how well the best trace's belief holds."""
-    judged = [weights.probabilities(one.features, one.none)[:-1] for one in seen]
-    kept = [pair for pair in zip(judged, seen, strict=True) if len(pair[0])]
+    believed = [weights.probabilities(one.features, one.none)[:-1] for one in seen]
+    kept = [pair for pair in zip(believed, seen, strict=True) if len(pair[0])]
     belief = np.array([float(beliefs.max()) for beliefs, _ in kept])
     right = np.array([float(one.right[int(beliefs.argmax())]) for beliefs, one in kept])
     return {
@@ -222,14 +241,24 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument("--scenes", type=int, default=400, help="to fit with, default 400")
     parser.add_argument("--held-out", type=int, default=200, help="to measure on, default 200")
     options = parser.parse_args(arguments)
-    model = StepModel(options.folder)
-    observe = EYES["learned"]().observe
-    weights = fit(list(examples(model, observe, SEED, options.scenes)))
+    model, eye = StepModel(options.folder), EYES["learned"]()
+    ends = fit_ends(seen_ends(model, eye, END_FIT_SEED, options.scenes))
+    weights = fit(list(examples(model, eye, ends, SEED, options.scenes)), ends)
     (options.folder / FILE).write_text(weights.model_dump_json(indent=2) + "\n")
-    held_out = figures(list(examples(model, observe, HELD_OUT_SEED, options.held_out)), weights)
+    held_out = list(examples(model, eye, ends, HELD_OUT_SEED, options.held_out))
+    told = seen_ends(model, eye, END_MEASURE_SEED, options.held_out)
     path = options.folder / "metrics.json"
     metrics = json.loads(path.read_text())
-    metrics["traces"] = {"fit_seed": SEED, "measure_seed": HELD_OUT_SEED, **held_out}
+    metrics["ends"] = {
+        "fit_seed": END_FIT_SEED,
+        "measure_seed": END_MEASURE_SEED,
+        **end_figures(told, ends),
+    }
+    metrics["traces"] = {
+        "fit_seed": SEED,
+        "measure_seed": HELD_OUT_SEED,
+        **figures(held_out, weights),
+    }
     path.write_text(json.dumps(metrics, indent=2) + "\n")
 
 

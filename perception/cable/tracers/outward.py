@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+from pydantic import BaseModel, ConfigDict
 from scipy.special import expit, logit
 
 from perception.cable.tracers.paths import Path
@@ -20,28 +21,49 @@ from perception.models.tracer_crop import STEP
 LOOKS = (0.5, 0.0)
 # Points of the path that leads there; their directions tell the way.
 BEFORE = np.array([[2.0], [1.0], [0.0]])
-# Logarithm of the odds that a cable ends: a constant, and shares of those of who saw the end and
-# of the tracer; fitted to 304 ends that were seen in 110 drawn scenes, of which 155 were some.
-ONE, SEEN, STOPS = 0.8, 0.55, 0.8
 # No belief of a network is surer than this.
 LEAST = 1e-3
 
 
-def judged(model: StepModel, scaled: ScaledImage, ends: Sequence[Endpoint]) -> tuple[Endpoint, ...]:
+class EndWeights(BaseModel):
+    """What the odds of an end are made of: a constant and the log odds of two witnesses.
+
+    Attributes:
+        one: The constant.
+        seen: Weight of who saw the end.
+        stops: Weight of the tracer, who looks outwards there.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    one: float = 0.8
+    seen: float = 0.55
+    stops: float = 0.8
+
+
+def judged(
+    model: StepModel, scaled: ScaledImage, ends: Sequence[Endpoint], weights: EndWeights
+) -> tuple[Endpoint, ...]:
     """Return ends with what the tracer believes of them, too, the surest first.
 
     Args:
         model: Looks ahead.
         scaled: The image in which cables have the width that the tracer knows.
         ends: In the original image.
+        weights: How both are weighed.
     """
     if not ends:
         return ()
-    seen = np.array([end.probability for end in ends])
-    odds = ONE + SEEN * _logit(seen) + STOPS * _logit(stops(model, scaled, ends))
+    odds = weights.one + witnesses(model, scaled, ends) @ (weights.seen, weights.stops)
     beliefs = expit(odds).tolist()
     told = [replace(end, probability=belief) for end, belief in zip(ends, beliefs, strict=True)]
     return tuple(sorted(told, key=lambda end: -end.probability))
+
+
+def witnesses(model: StepModel, scaled: ScaledImage, ends: Sequence[Endpoint]) -> Floats:
+    """Return the log odds of each end by who saw it and by the tracer, shape (N, 2)."""
+    seen = np.array([end.probability for end in ends])
+    return np.column_stack([_logit(seen), _logit(stops(model, scaled, ends))])
 
 
 def stops(model: StepModel, scaled: ScaledImage, ends: Sequence[Endpoint]) -> Floats:

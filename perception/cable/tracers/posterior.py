@@ -24,7 +24,7 @@ from perception.cable.plug_ends import find_ends
 from perception.cable.polyline import pixels_of
 from perception.cable.tracers.evidence import FEATURES, NONE_FEATURES, doubts, evidence
 from perception.cable.tracers.hypotheses import Hypothesis, hypotheses
-from perception.cable.tracers.outward import judged
+from perception.cable.tracers.outward import EndWeights, judged
 from perception.cable.tracers.search import SearchConfig
 from perception.cable.tracers.starts import from_start
 from perception.cable.tracers.steps import StepModel
@@ -49,12 +49,14 @@ class Weights(BaseModel):
     Attributes:
         trace: Weight of each feature of a trace, by its name.
         none: Weight of each feature of "none of these".
+        ends: Weights of what speaks for ends.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
     trace: dict[str, float]
     none: dict[str, float]
+    ends: EndWeights = EndWeights()
 
     def probabilities(self, features: Floats, none: Floats) -> Floats:
         """Return the probability of each trace and, last, of none, shape (K + 1,)."""
@@ -155,12 +157,12 @@ class PosteriorTracer:
         if view is None:
             return tuple(endpoints)
         scaled = scale_image(image, view.width_px, WIDTH, self._model.zoom)
-        told = judged(self._model, scaled, endpoints)
+        told = judged(self._model, scaled, endpoints, self._weights.ends)
         if view.stretches and not any(end.probability >= LEAST_END for end in told):
             longest = max(view.stretches, key=len)
             sketch = view.sketch(scaled)
             found = walked_ends(self._model, self._config, scaled, longest, sketch)
-            told = (*judged(self._model, scaled, found), *told)
+            told = (*judged(self._model, scaled, found, self._weights.ends), *told)
         return tuple(sorted(told, key=lambda end: -end.probability))
 
     def _asked(

@@ -18,10 +18,6 @@ from perception.cable.tracers.steps import Outlook, StepModel
 from perception.cable.tracers.stretches import Stretches
 from perception.cable.types import TraceEnd
 from perception.models.frames import ScaledImage
-from perception.models.tracer_crop import HERE, STEP
-
-# No cable goes on farther back than this.
-BACK = 0.3 * STEP
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,8 +119,7 @@ class Search:
     def _ways_on(self, image: ScaledImage, path: Path, outlook: Outlook) -> list[Path]:
         """Return every way in which a path may go on or end where no end is known."""
         config = self._config
-        found = find_modes(outlook.cells, config.least, config.modes)
-        modes = [mode for mode in found if mode.point_crop[0] > HERE[0] - BACK]
+        modes = find_modes(outlook.cells, config.least, config.modes)
         is_dead = self._is_at_dead_end(path)
         end = config.end_odds * outlook.end
         if is_dead:
