@@ -1,9 +1,19 @@
 """The YAML document of a campaign: which mission, with what, how often, within which limits."""
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import Field, StringConstraints, ValidationError, model_validator
+from pydantic import (
+    BaseModel,
+    Discriminator,
+    Field,
+    StringConstraints,
+    Tag,
+    ValidationError,
+    model_validator,
+)
+from pydantic_core import ErrorDetails
 
 from executive.core.errors import DocumentError, Fault, InputError
 from executive.core.registry import closest
@@ -21,6 +31,14 @@ class SeedRange(Model):
 
     first: Seed = 0
     count: Count
+
+
+_RANGE, _LIST = "a range", "a list"
+Seeds = Annotated[
+    Annotated[SeedRange, Tag(_RANGE)]
+    | Annotated[tuple[Seed, ...], Field(min_length=1), Tag(_LIST)],
+    Discriminator(lambda given: _RANGE if isinstance(given, dict | SeedRange) else _LIST),
+]
 
 
 class Draw(Model):
@@ -75,7 +93,7 @@ class CampaignDocument(Model):
     campaign: Name
     about: Text = ""
     mission: Text = Field(description="Name of a mission, or its file from this document on.")
-    seeds: SeedRange | Annotated[tuple[Seed, ...], Field(min_length=1)] = SeedRange(count=1)
+    seeds: Seeds = SeedRange(count=1)
     set_: dict[Key, Any] = Field(
         default_factory=dict, alias="set", description="Settings of all runs."
     )
@@ -119,19 +137,33 @@ def read_campaign(file: Path) -> tuple[CampaignDocument, Source]:
         raise DocumentError(_faults(source, error)) from None
 
 
+_MODELS: Mapping[YamlPath, type[BaseModel]] = {
+    (): CampaignDocument,
+    ("seeds",): SeedRange,
+    ("sample",): Sample,
+    ("limits",): Limits,
+}
+
+
 def _faults(source: Source, error: ValidationError) -> list[Fault]:
     """Say what pydantic found, once a place."""
-    known = [field.alias or name for name, field in CampaignDocument.model_fields.items()]
     found: dict[YamlPath, str] = {}
     for detail in error.errors(include_url=False, include_input=False):
-        path = tuple(part for part in detail["loc"] if part != "[key]")
-        message = detail["msg"].removeprefix("Value error, ")
-        if detail["type"] == "extra_forbidden":
-            message = f"unknown key {path[-1]!r}"
-            message += f"; {closest(str(path[-1]), known)}" if len(path) == 1 else ""
-        elif detail["type"] == "missing":
-            message = f"missing key {path[-1]!r}"
-        else:
-            message = ".".join(str(part) for part in path) + f": {message}"
-        found.setdefault(path, message)
+        path = tuple(part for part in detail["loc"] if part not in ("[key]", _RANGE, _LIST))
+        found.setdefault(path, _in_words(path, detail))
     return [Fault(source.file, *source.key_mark(path), "", said) for path, said in found.items()]
+
+
+def _in_words(path: YamlPath, detail: ErrorDetails) -> str:
+    if detail["type"] == "missing":
+        return f"missing key {path[-1]!r}"
+    if detail["type"] == "extra_forbidden":
+        model = _MODELS.get(path[:-1])
+        fields = model.model_fields.items() if model else ()
+        known = [field.alias or name for name, field in fields]
+        return f"unknown key {path[-1]!r}" + (f"; {closest(str(path[-1]), known)}" if known else "")
+    place = ".".join(map(str, path))
+    if detail["type"] == "too_short":
+        return f"{place}: expected at least one"
+    message = detail["msg"].removeprefix("Value error, ").replace("a valid tuple", "a list")
+    return f"{place}: {message.replace('Input should be', 'expected', 1)}"

@@ -53,7 +53,11 @@ def test_draws_keep_to_their_bounds_and_to_their_own_stream(tmp_path):
     ("text", "said"),
     [
         ("seed: 3\n", "campaign.yaml:4:1: unknown key 'seed'; did you mean 'seeds'?"),
-        ("seeds: {count: 0}\n", "seeds"),
+        ("seeds: {count: 0}\n", "campaign.yaml:4:9: seeds.count: expected greater than"),
+        ("seeds: {cont: 3}\n", "campaign.yaml:4:9: unknown key 'cont'; did you mean 'count'?"),
+        ("seeds: 3\n", "campaign.yaml:4:1: seeds: expected a list"),
+        ("seeds: []\n", "campaign.yaml:4:1: seeds: expected at least one"),
+        ("limits: {wall: 3}\n", "unknown key 'wall'; did you mean 'wall_s'?"),
         ("limits: {wall_s: -1.0}\n", "wall_s: Input should be greater than 0"),
         ("limits: {walls: 1.0}\n", "unknown key 'walls'"),
         ("sample: {count: 2, of: {a: {uniform: [2, 1]}}}\n", "the lowest comes first"),
