@@ -58,7 +58,7 @@ def test_draws_keep_to_their_bounds_and_to_their_own_stream(tmp_path):
         ("seeds: 3\n", "campaign.yaml:4:1: seeds: expected a list"),
         ("seeds: []\n", "campaign.yaml:4:1: seeds: expected at least one"),
         ("limits: {wall: 3}\n", "unknown key 'wall'; did you mean 'wall_s'?"),
-        ("limits: {wall_s: -1.0}\n", "wall_s: Input should be greater than 0"),
+        ("limits: {wall_s: -1.0}\n", "wall_s: expected greater than 0"),
         ("limits: {walls: 1.0}\n", "unknown key 'walls'"),
         ("sample: {count: 2, of: {a: {uniform: [2, 1]}}}\n", "the lowest comes first"),
         ("sample: {count: 2, of: {a: {log_uniform: [0, 1]}}}\n", "bounds above 0"),
