@@ -119,6 +119,7 @@ class Constants(NamedTuple):
     overload_force: float
     half_table_x: float
     half_table_y: float
+    edge_radius: float
     floor_height: float
     gravity: float
 
@@ -768,17 +769,21 @@ def _rest_on_table(chain: Chain, constants: Constants) -> None:
 @kernel
 def _depth_in_table(p: Vector, constants: Constants) -> tuple[float, Vector]:
     """Return how deep a node is in the table or the floor, and which way is out."""
-    radius = constants.radius
+    radius, rounding = constants.radius, constants.edge_radius
     beyond_x, beyond_y = abs(p[0]) - constants.half_table_x, abs(p[1]) - constants.half_table_y
     beyond = max(beyond_x, beyond_y)
     if beyond >= radius:
         return constants.floor_height + radius - p[2], (0.0, 0.0, 1.0)
     out_x, out_y = np.sign(p[0]), np.sign(p[1])
-    if beyond > 0.0:
-        edge = max(beyond_x, 0.0) * out_x, max(beyond_y, 0.0) * out_y, max(p[2], 0.0)
+    if beyond > -rounding:
+        edge = (
+            max(beyond_x + rounding, 0.0) * out_x,
+            max(beyond_y + rounding, 0.0) * out_y,
+            max(p[2] + rounding, 0.0),
+        )
         distance = _length(edge) + TINY_M
         normal = edge[0] / distance, edge[1] / distance, edge[2] / distance
-        return radius - distance, normal
+        return rounding + radius - distance, normal
     if radius - p[2] <= radius - beyond:
         return radius - p[2], (0.0, 0.0, 1.0)
     if beyond_x > beyond_y:

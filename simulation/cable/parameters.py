@@ -26,6 +26,8 @@ class RodParameters:
         overload_force_n: Force that no grasp can exert on a strand.
         tear_m: A strand this far from where the fingers should hold it has been torn out.
         table_size_m: Size of the table in x and y; its top is z = 0, its centre the origin.
+        edge_radius_m: Of the table's rounded edges; about as large as the distance of nodes, or
+            cable that is drawn in over an edge catches on it.
         floor_height_m: Height of the floor beside the table.
         gravity_m_s2: Acceleration of free fall, downwards.
         substep_s: Nominal length of one solver step.
@@ -51,6 +53,7 @@ class RodParameters:
     overload_force_n: float = 30.0
     tear_m: float = 0.02
     table_size_m: tuple[float, float] = (1.0, 0.75)
+    edge_radius_m: float = 0.01
     floor_height_m: float = -0.75
     gravity_m_s2: float = 9.81
     substep_s: float = 0.00025

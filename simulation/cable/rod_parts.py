@@ -102,6 +102,7 @@ def constants_of(parameters: RodParameters) -> kernels.Constants:
         overload_force=parameters.overload_force_n,
         half_table_x=0.5 * parameters.table_size_m[0],
         half_table_y=0.5 * parameters.table_size_m[1],
+        edge_radius=parameters.edge_radius_m,
         floor_height=parameters.floor_height_m,
         gravity=parameters.gravity_m_s2,
     )

@@ -148,6 +148,19 @@ def test_beyond_the_edge_there_is_no_support():
     assert rod.positions_m[0, 2] == pytest.approx(rod.parameters.radius_m, abs=1e-3)
 
 
+def test_cable_that_hangs_over_an_edge_is_drawn_in_by_little_more_than_its_weight():
+    hanging = np.array([[0.5033, 0.0, 0.003 - 0.01 * k] for k in range(1, 25)])
+    lying = np.column_stack([np.linspace(0.0, 0.5, 51), np.zeros(51), np.full(51, 0.0033)])
+    rod = Rod(np.vstack([lying, hanging]))
+    rod.advance(0.1)
+    assert grasp(rod, "left", "pinch", (0.3, 0.0, 0.0033))
+    carry(rod, {"left": (0.3, 0.0, 0.03)})
+    carry(rod, {"left": (0.0, 0.0, 0.03)})
+    weight_n = 0.24 * rod.parameters.density_kg_m * rod.parameters.gravity_m_s2
+    assert rod.tension_n("left") < 4.0 * weight_n
+    assert rod.positions_m[:, 2].min() > -0.01
+
+
 def test_resting_cable_wakes_when_something_comes_near():
     rod = Rod(straight(0.3))
     far, near = np.array([[0.15, 0.1, 0.01]]), np.array([[0.15, 0.0, 0.01]])
