@@ -63,7 +63,7 @@ def test_draws_keep_to_their_bounds_and_to_their_own_stream(tmp_path):
         ("sample: {count: 2, of: {a: {uniform: [2, 1]}}}\n", "the lowest comes first"),
         ("sample: {count: 2, of: {a: {log_uniform: [0, 1]}}}\n", "bounds above 0"),
         ("sample: {count: 2, of: {a: {}}}\n", "expected one of uniform"),
-        ("grid: {a: []}\n", "at least 1 item"),
+        ("grid: {a: []}\n", "at least one"),
         ("grid: {a: [1]\n", "campaign.yaml:"),
         ("keep: some\n", "'failed', 'all' or 'none'"),
     ],
