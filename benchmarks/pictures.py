@@ -57,6 +57,19 @@ def _search(folder: Path) -> ColourImage:
     return _sheet(_recorded(folder, "search", SEARCH_SEED))
 
 
+def _search_strip(folder: Path) -> ColourImage:
+    """Return a search in four looks: before and after the first belief, when found, when out."""
+    from executive.engine.recording.reader import Recording
+    from perception.shelf.drawing import TARGET
+
+    images = Recording.open(_recorded(folder, "search", SEARCH_SEED)).images()
+    looks = [np.asarray(Image.open(io.BytesIO(image.png)).convert("RGB")) for image in images]
+    found = next(i for i, look in enumerate(looks) if (look == TARGET).all(axis=2).any())
+    top, bottom = (round(share * len(looks[1])) for share in (0.45, 0.9))
+    chosen = [looks[i][top:bottom] for i in (1, 2, found, found + 1)]
+    return np.hstack([look.repeat(2, axis=0).repeat(2, axis=1) for look in chosen])
+
+
 def _search_kinova(folder: Path) -> ColourImage:
     return _sheet(_recorded(folder, "search_kinova", SEARCH_SEED))
 
@@ -78,6 +91,11 @@ PICTURES = {
         "The first and the last camera image of a run, with what is believed drawn over.",
         _first_and_last,
     ),
+    "readme-search": Picture(
+        "search.png",
+        "A search in four looks: where the product may be (red), what shows of it (green).",
+        _search_strip,
+    ),
     "knots": Picture(
         "results_knots.webp",
         "The first scene of A1, A2 and A3, drawn (above) and settled (below), with what our "
@@ -93,7 +111,7 @@ PICTURES = {
     "search": Picture(
         "results_search.webp",
         f"All looks of the mission with seed {SEARCH_SEED}, and what was believed after each: "
-        "where the product may be (blue), what shows of it (green). The first is from before any "
+        "where the product may be (red), what shows of it (green). The first is from before any "
         "look.",
         _search,
     ),

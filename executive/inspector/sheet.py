@@ -104,8 +104,8 @@ def _tick_at(run: Recording, time_s: float) -> int:
 
 
 def _captioned(look: _Look) -> ColourImage:
-    grey = cv2.cvtColor(look.image, cv2.COLOR_GRAY2BGR) if look.image.ndim == 2 else look.image
-    canvas: ColourImage = np.asarray(grey, dtype=np.uint8).copy()
+    way_to_bgr = cv2.COLOR_GRAY2BGR if look.image.ndim == 2 else cv2.COLOR_RGB2BGR
+    canvas: ColourImage = np.asarray(cv2.cvtColor(look.image, way_to_bgr), dtype=np.uint8)
     for shape in look.shapes:
         _draw(canvas, shape)
     share = max(SHARE, LEAST_WIDTH / canvas.shape[1])
