@@ -15,10 +15,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.harness import Row, median, share
+from benchmarks.knot_truth import visits_of
 from perception.cable.topology import Knottedness, Strand, close_over, curve_crossings
 from perception.cable.topology.certificate import certify
 from perception.cable.topology.checker import replay
-from perception.cable.topology.rule import Visit, knot_intervals
+from perception.cable.topology.rule import knot_intervals
 
 Floats = NDArray[np.float64]
 
@@ -89,15 +90,6 @@ def answer(strand: Strand) -> Answer:
     if certificate is not None:
         proved = replay(diagram, certificate).state
     return Answer(verdict.state, proved, bool(knot_intervals(visits_of(strand))), seconds)
-
-
-def visits_of(strand: Strand) -> list[Visit]:
-    """Return the visits of an open curve, in order, for the thesis's rule."""
-    visits = []
-    for number, crossing in enumerate(strand.crossings):
-        visits.append(Visit(number, crossing.first_over, crossing.first))
-        visits.append(Visit(number, not crossing.first_over, crossing.second))
-    return sorted(visits, key=lambda visit: visit.arc)
 
 
 def random_strand(rng: np.random.Generator, *, laid: bool) -> Strand:

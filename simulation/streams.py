@@ -36,11 +36,11 @@ GRIPPER_NAMES = [f"{arm}_gripper" for arm in ARMS]
 def joint_states_json(state: ArmsState) -> bytes:
     """Return a `JointStates` message."""
     openings_m = [state.openings_m[arm] for arm in ARMS]
-    return _json(
+    return json_bytes(
         {
             "names": JOINT_NAMES + GRIPPER_NAMES,
-            "positions": _rounded([*state.positions_rad, *openings_m], 5),
-            "velocities": _rounded([*state.velocities_rad_s, *(0.0 for _ in ARMS)], 4),
+            "positions": rounded([*state.positions_rad, *openings_m], 5),
+            "velocities": rounded([*state.velocities_rad_s, *(0.0 for _ in ARMS)], 4),
         }
     )
 
@@ -56,13 +56,13 @@ def scene_json(
     poses = np.hstack([positions_m, quats_xyzw])
     first_m, *others_m = lines_m
     message: dict[str, object] = {
-        "links": dict(zip(link_names, _rounded(poses, 4), strict=True)),
-        "cable_nodes_m": _rounded(first_m, 4),
+        "links": dict(zip(link_names, rounded(poses, 4), strict=True)),
+        "cable_nodes_m": rounded(first_m, 4),
         "cable_radius_m": radius_m,
     }
     if others_m:
-        message["more_cables_m"] = [_rounded(line_m, 4) for line_m in others_m]
-    return _json(message)
+        message["more_cables_m"] = [rounded(line_m, 4) for line_m in others_m]
+    return json_bytes(message)
 
 
 @dataclass(slots=True)
@@ -98,11 +98,13 @@ class Stream:
         return messages
 
 
-def _rounded(values: object, digits: int) -> list[Any]:
+def rounded(values: object, digits: int) -> list[Any]:
+    """Return numbers of any shape as lists, rounded to so many digits."""
     # Adding zero turns -0.0, which would look like a change, into 0.0.
-    rounded: list[Any] = (np.round(np.asarray(values, dtype=np.float64), digits) + 0.0).tolist()
-    return rounded
+    numbers: list[Any] = (np.round(np.asarray(values, dtype=np.float64), digits) + 0.0).tolist()
+    return numbers
 
 
-def _json(message: dict[str, object]) -> bytes:
+def json_bytes(message: dict[str, object]) -> bytes:
+    """Return a message as JSON without spaces."""
     return json.dumps(message, separators=(",", ":")).encode()

@@ -10,24 +10,20 @@
     the cups hold, or nothing.
 """
 
-import json
 from collections.abc import Mapping
-from typing import Any
 
-import numpy as np
-
-from perception.shelf.types import Floats
 from robots.interfaces import ArmsState
 from simulation.shelf_cell.physics import ShelfPhysics
+from simulation.streams import json_bytes, rounded
 
 
 def joint_states_json(names: tuple[str, ...], state: ArmsState) -> bytes:
     """Return a `JointStates` message."""
-    return _json(
+    return json_bytes(
         {
             "names": list(names),
-            "positions": _rounded(state.positions_rad, 5),
-            "velocities": _rounded(state.velocities_rad_s, 4),
+            "positions": rounded(state.positions_rad, 5),
+            "velocities": rounded(state.velocities_rad_s, 4),
         }
     )
 
@@ -36,11 +32,11 @@ def scene_json(
     physics: ShelfPhysics, colours: Mapping[str, tuple[int, int, int]], held: str
 ) -> bytes:
     """Return a `ShelfScene` message."""
-    links = _rounded(physics.link_poses(), 4)
-    boxes = _rounded(physics.box_poses(), 4)
-    sizes = _rounded(physics.box_sizes_m, 4)
+    links = rounded(physics.link_poses(), 4)
+    boxes = rounded(physics.box_poses(), 4)
+    sizes = rounded(physics.box_sizes_m, 4)
     names = physics.box_names
-    return _json(
+    return json_bytes(
         {
             "links": dict(zip(physics.link_names, links, strict=True)),
             "boxes": dict(zip(names, boxes, strict=True)),
@@ -49,13 +45,3 @@ def scene_json(
             "held": held,
         }
     )
-
-
-def _rounded(values: Floats, digits: int) -> list[Any]:
-    # Adding zero turns -0.0, which would look like a change, into 0.0.
-    rounded: list[Any] = (np.round(np.asarray(values, dtype=np.float64), digits) + 0.0).tolist()
-    return rounded
-
-
-def _json(message: dict[str, object]) -> bytes:
-    return json.dumps(message, separators=(",", ":")).encode()

@@ -5,11 +5,12 @@ from typing import Annotated
 
 import numpy as np
 
-from executive.core.outcome import Outcome, failure, success
+from executive.core.outcome import failure
 from executive.core.skill import In, SkillRun
 from perception.cable.types import Endpoint
 from perception.camera import CameraFrame
 from robots.interfaces import Arm, MotionFailure, TcpGoal
+from skills.cable.carrying import motion_outcome
 from skills.cable.dilate_knot import apart
 from skills.cable.grasping import CLEARANCE_M, grasp_goal
 from skills.cable.knot_sites import HANDS_APART_M, REACH_X_M
@@ -51,17 +52,17 @@ class SeparateEnds(ArmSkill):
         hovers = (above(goals[0], CLEARANCE_M), above(goals[1], CLEARANCE_M))
         hands = yield from self._worker.run(self._arms.assign, hovers)
         if isinstance(hands, MotionFailure):
-            return _outcome(hands)
+            return motion_outcome(hands)
         failed = yield from self._descend(dict(zip(hands, goals, strict=True)), CLEARANCE_M)
         if failed is not None:
-            return _outcome(failed)
+            return motion_outcome(failed)
         yield from self._set_grips(dict.fromkeys(hands, "pinch"))
         missed = [arm for arm in hands if not self._arms.holds(arm)]
         failed = None if missed else (yield from self._draw_apart(hands))
         risen = yield from self._release(hands, CLEARANCE_M)
         if missed:
             return failure("grasp.missed", f"closed on nothing: {', '.join(missed)}")
-        return _outcome(failed or risen)
+        return motion_outcome(failed or risen)
 
     def _draw_apart(self, hands: tuple[Arm, Arm]) -> MotionSteps:
         """Lift, move apart along the table as far as the arms reach, lay down."""
@@ -80,9 +81,3 @@ class SeparateEnds(ArmSkill):
 
 def _goal(frame: CameraFrame, end: Endpoint) -> TcpGoal:
     return grasp_goal(frame, end.position_px + HOLD_BEHIND_PX * end.direction, end.direction)
-
-
-def _outcome(failed: MotionFailure | None) -> Outcome:
-    if failed is not None:
-        return failure(failed.code, failed.text, stage=failed.stage)
-    return success()

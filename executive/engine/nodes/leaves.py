@@ -6,9 +6,8 @@ from collections.abc import Sequence
 from executive.core.clock import Clock
 from executive.core.outcome import RUNNING, Outcome, failure, success
 from executive.engine.language.amounts import Number, number
-from executive.engine.language.expression import Expression
 from executive.engine.language.scope import Scope
-from executive.engine.nodes.leaf import Leaf, answer
+from executive.engine.nodes.leaf import Condition, Leaf
 from executive.engine.nodes.supervision import Supervision
 
 
@@ -37,21 +36,14 @@ class Wait(Leaf):
         return success() if now_s >= self._due_s else RUNNING
 
 
-class WaitFor(Leaf):
+class WaitFor(Condition):
     """Runs until an expression is true, then succeeds."""
 
     MEMORY = ()
 
-    def __init__(
-        self, name: str, path: str, expression: Expression, scope: Scope, supervision: Supervision
-    ) -> None:
-        """Keep the expression and the names that it reads."""
-        super().__init__(name, path, supervision)
-        self._expression, self._scope = expression, scope
-
     def answer(self) -> Outcome:
         """Evaluate the expression."""
-        outcome = answer(self._expression, self._scope)
+        outcome = super().answer()
         return outcome if outcome.reason is None else RUNNING
 
 
