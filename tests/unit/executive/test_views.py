@@ -1,6 +1,7 @@
 """Live view and replay follow the same messages and show the same."""
 
 import json
+from collections import Counter
 
 import numpy as np
 import pytest
@@ -153,7 +154,10 @@ def test_a_rerun_file_has_scene_images_joints_and_what_was_done(recording, tmp_p
     rerun = pytest.importorskip("rerun")
     views.write_rerun(recording, tmp_path / "run.rrd")
     chunks = rerun.chunk.RrdReader(str(tmp_path / "run.rrd")).stream().to_chunks()
-    rows = {chunk.entity_path: chunk.num_rows for chunk in chunks if not chunk.is_static}
+    rows = Counter[str]()
+    for chunk in chunks:  # an entity has more than one where writing was slow
+        if not chunk.is_static:
+            rows[chunk.entity_path] += chunk.num_rows
     assert rows["/world/robot/left_link_1"] == rows["/world/cable"] == 3
     assert rows["/world/trace"] == rows["/world/camera"] == rows["/image"] == 1
     assert rows["/doing"] == 2
