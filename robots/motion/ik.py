@@ -14,14 +14,12 @@ import numpy as np
 import pinocchio as pin
 
 from robots.interfaces import Floats
+from robots.motion.chain_kernels import Descent, descend
 from robots.motion.model import ArmKinematics
 
 MAX_STEPS = 30
 TOLERANCE = 1e-5  # of the twist's norm [m, rad]
-_STEP_CAP_RAD = 0.5
-_DAMPING = 1e-3
-_IDENTITY: Floats = np.eye(6)
-_UNLIMITED: Floats = np.array(np.inf)
+DESCENT = Descent(MAX_STEPS, TOLERANCE, step_cap=0.5, damping=1e-3)
 
 
 def solve_pose(
@@ -41,27 +39,15 @@ def solve_pose(
         max_steps: Steps before giving up.
         limited: Whether to stay within limits; without, one sees which limit hinders.
     """
-    q = start_rad.copy()
-    lower, upper = (arm.lower, arm.upper) if limited else (_UNLIMITED * -1.0, _UNLIMITED)
-    for _ in range(max_steps):
-        T_now, jacobian = arm.tcp_jacobian(q)
-        error = pin.log6(T_now.actInv(T_world_tcp)).vector
-        size = float(np.sqrt(error @ error))
-        if size < TOLERANCE:
-            return q
-        step = _damped_step(jacobian, error, size)
-        stuck = ((q <= lower) & (step < 0.0)) | ((q >= upper) & (step > 0.0))
-        if stuck.any():
-            step = _damped_step(jacobian * ~stuck, error, size)
-        q = np.clip(q + step, lower, upper)
-    return None
-
-
-def _damped_step(jacobian: Floats, error: Floats, size: float) -> Floats:
-    damped = jacobian @ jacobian.T + (_DAMPING * max(size, 1e-3)) * _IDENTITY
-    step: Floats = jacobian.T @ np.linalg.solve(damped, error)
-    largest = float(np.abs(step).max())
-    return step * (_STEP_CAP_RAD / largest) if largest > _STEP_CAP_RAD else step
+    q, reached = descend(
+        arm.chain,
+        np.ascontiguousarray(T_world_tcp.rotation),
+        T_world_tcp.translation,
+        start_rad,
+        DESCENT._replace(most_steps=max_steps),
+        limited,
+    )
+    return q if reached else None
 
 
 def nearest_turns(arm: ArmKinematics, positions_rad: Floats, present_rad: Floats) -> Floats:

@@ -7,26 +7,30 @@ either side are tried. Swings are spread over the whole line, since sudden ones 
 driven slowly.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial
 from itertools import product
 from math import ceil
 
 import numpy as np
-import pinocchio as pin
 
 from robots.interfaces import ArmName, Floats
-from robots.motion.ik import solve_pose
+from robots.motion.chain_kernels import Swing, restored, swing_along
+from robots.motion.ik import DESCENT
 from robots.motion.model import SINGULAR_ZONE, ArmKinematics, RobotModel
 
 SAMPLE_SPACING_M = 0.008
 _LEAST_SAMPLES = 4
 _SWINGS_RAD = (0.03, -0.03, 0.08, -0.08)  # of the elbow's free motion, a sample
-_LARGEST_STEP_RAD = 0.4  # between samples; more means that the arm jumps to another branch
 _LIMIT_ZONE_RAD = 0.35
-_LARGEST_PUSH_RAD = 0.08
-_PROBE_RAD = 0.02
+_SWING = Swing(
+    largest_step=0.4,  # between samples; more means that the arm jumps to another branch
+    limit_zone=_LIMIT_ZONE_RAD,
+    largest_push=0.08,
+    probe=0.02,
+    singular_zone=SINGULAR_ZONE,
+)
 _BLUR_SAMPLES = 5.0
 
 
@@ -66,37 +70,18 @@ def follow_line(
         swing_rad: Motion of the elbow that is added at each step [rad].
     """
     T_start = arm.tcp_pose(start_rad)
-    ways = T_start.translation + np.linspace(0.0, 1.0, count + 1)[:, None] * displacement_m
-    poses = [pin.SE3(T_start.rotation, way) for way in ways]
-    samples = _swing_along(arm, start_rad, poses, swing_rad)
-    if len(samples) < len(poses):
+    rotation = np.ascontiguousarray(T_start.rotation)
+    places_m = T_start.translation + np.linspace(0.0, 1.0, count + 1)[:, None] * displacement_m
+    samples = swing_along(
+        arm.chain, start_rad, rotation, places_m, swing_rad, arm.redundant, DESCENT, _SWING
+    )
+    if len(samples) < len(places_m):
         return ArmLine(samples, complete=False)
-    smooth = _smoothed(arm, samples, poses)
-    return ArmLine(samples if smooth is None else smooth, complete=True)
+    smooth, whole = restored(arm.chain, rotation, places_m, _blurred(arm, samples), DESCENT)
+    return ArmLine(smooth if whole else samples, complete=True)
 
 
-def _swing_along(
-    arm: ArmKinematics, start_rad: Floats, poses: Sequence[pin.SE3], swing_rad: float
-) -> Floats:
-    """Return the configurations up to the first pose that cannot be reached from the last."""
-    q = start_rad
-    samples = [q]
-    free: Floats | None = None
-    for pose in poses[1:]:
-        swung = q
-        if arm.redundant:
-            free = _free_direction(arm, q, free)
-            swing = swing_rad + _push(arm, q, free)
-            swung = np.clip(q + swing * free, arm.lower, arm.upper)
-        following = solve_pose(arm, pose, swung)
-        if following is None or np.abs(following - q).max() > _LARGEST_STEP_RAD:
-            break
-        samples.append(following)
-        q = following
-    return np.array(samples)
-
-
-def _smoothed(arm: ArmKinematics, samples: Floats, poses: Sequence[pin.SE3]) -> Floats | None:
+def _blurred(arm: ArmKinematics, samples: Floats) -> Floats:
     """Spread sudden swings over the line: blur the joint positions, then restore the poses.
 
     Odd reflection at both ends keeps the first sample where it is.
@@ -108,14 +93,9 @@ def _smoothed(arm: ArmKinematics, samples: Floats, poses: Sequence[pin.SE3]) -> 
     after = 2 * samples[-1] - samples[-2 : -reach - 2 : -1]
     padded = np.concatenate([before, samples, after])
     windows = np.lib.stride_tricks.sliding_window_view(padded, 2 * reach + 1, axis=0)
-    blurred = np.clip(windows @ (weights / weights.sum()), arm.lower, arm.upper)
-    smooth = [samples[0]]
-    for pose, q in zip(poses[1:], blurred[1:], strict=True):
-        restored = solve_pose(arm, pose, q)
-        if restored is None:
-            return None
-        smooth.append(restored)
-    return np.array(smooth)
+    blurred: Floats = np.clip(windows @ (weights / weights.sum()), arm.lower, arm.upper)
+    blurred[0] = samples[0]
+    return blurred
 
 
 def line_variants(
@@ -170,23 +150,3 @@ def in_step(robot: RobotModel, start_rad: Floats, lines: Mapping[ArmName, ArmLin
     for arm, line in lines.items():
         samples[:, robot.joints_of(arm)] = line.samples_rad
     return samples
-
-
-def _free_direction(arm: ArmKinematics, q: Floats, previous: Floats | None) -> Floats:
-    """Return the unit joint motion that leaves the tool where it is, signed as before."""
-    free: Floats = np.linalg.svd(arm.tcp_jacobian(q)[1])[2][-1]
-    lead = free[int(np.argmax(np.abs(free)))] if previous is None else free @ previous
-    return free if lead >= 0.0 else -free
-
-
-def _push(arm: ArmKinematics, q: Floats, free: Floats) -> float:
-    """Return how far to swing along the free direction, away from limits and singularities."""
-    near_lower = np.clip(1.0 - (q - arm.lower) / _LIMIT_ZONE_RAD, 0.0, 1.0)
-    near_upper = np.clip(1.0 - (arm.upper - q) / _LIMIT_ZONE_RAD, 0.0, 1.0)
-    from_limits = float(free @ (near_lower - near_upper))
-    dexterity = arm.dexterity(q)
-    if dexterity >= SINGULAR_ZONE:
-        return _LARGEST_PUSH_RAD * from_limits
-    slope = arm.dexterity(q + _PROBE_RAD * free) - arm.dexterity(q - _PROBE_RAD * free)
-    away = float(np.sign(slope)) * (1.0 - dexterity / SINGULAR_ZONE)
-    return _LARGEST_PUSH_RAD * (from_limits + away)

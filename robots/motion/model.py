@@ -17,6 +17,7 @@ from executive.core.registry import closest
 from robots.descriptions.specs import ArmSpec, RobotSpec, yumi_spec
 from robots.interfaces import ArmName, Floats
 from robots.limits import JointLimits
+from robots.motion.chain_kernels import Chain
 from robots.motion.extents import levers_m, longest_reach_m
 from robots.placement import Placement
 
@@ -35,6 +36,7 @@ class ArmKinematics:
         model: The reduced model.
         lower: What inverse kinematics may use [rad], shape (n,); the limits are a little wider.
         upper: As `lower`.
+        chain: The same arm for compiled loops.
         reach_m: The tool is never farther than this from the first joint [m].
     """
 
@@ -45,6 +47,7 @@ class ArmKinematics:
         self._tcp = model.getFrameId(tcp)
         self.lower: Floats = model.lowerPositionLimit + LIMIT_RESERVE_RAD
         self.upper: Floats = model.upperPositionLimit - LIMIT_RESERVE_RAD
+        self.chain = chain_of(model, self._tcp, self.lower, self.upper)
         self.reach_m = longest_reach_m(model, self._tcp) if reach_m is None else reach_m
 
     @property
@@ -72,6 +75,38 @@ class ArmKinematics:
     def dexterity(self, positions_rad: Floats) -> float:
         """Return the smallest singular value of the tool's Jacobian; 0 is a singularity."""
         return float(np.linalg.svd(self.tcp_jacobian(positions_rad)[1], compute_uv=False)[-1])
+
+
+def chain_of(model: pin.Model, tcp: int, lower: Floats, upper: Floats) -> Chain:
+    """Return an arm for compiled loops.
+
+    Args:
+        model: Its joints, one after the other, and no others.
+        tcp: Number of its tool's frame, which the last joint moves.
+        lower: What inverse kinematics may use, shape (n,).
+        upper: As `lower`.
+
+    Raises:
+        InputError: The joints are not one after the other.
+    """
+    joints, tool = range(1, model.njoints), model.frames[tcp]
+    if list(model.parents)[1:] != [j - 1 for j in joints] or tool.parentJoint != joints[-1]:
+        names = ", ".join(list(model.names)[1:])
+        raise InputError(f"{tool.name}: got joints {names}; expected a chain that ends there")
+    data = model.createData()
+    pin.computeJointJacobians(model, data, pin.neutral(model))
+    twists = np.array(
+        [pin.getJointJacobian(model, data, j, pin.ReferenceFrame.LOCAL)[:, j - 1] for j in joints]
+    )
+    placements = [*(model.jointPlacements[j] for j in joints), tool.placement]
+    return Chain(
+        rotations=np.array([placement.rotation for placement in placements]),
+        offsets=np.array([placement.translation for placement in placements]),
+        turns=np.ascontiguousarray(twists[:, 3:]),
+        slides=np.ascontiguousarray(twists[:, :3]),
+        lower=lower,
+        upper=upper,
+    )
 
 
 class RobotModel:
