@@ -185,16 +185,17 @@ def main() -> None:
     """Draw the pictures that are named, or all of them."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.pictures", description=__doc__)
     parser.add_argument("names", nargs="*", metavar="NAME", help=", ".join(PICTURES))
-    names = parser.parse_args().names or [*PICTURES]
+    parser.add_argument("--runs", type=Path, help="folder of recordings; those there are used")
+    chosen = parser.parse_args()
+    names = chosen.names or [*PICTURES]
     unknown = [name for name in names if name not in PICTURES]
     if unknown:
         parser.error(f"no picture {unknown[0]!r}; known: {', '.join(PICTURES)}")
     with tempfile.TemporaryDirectory() as folder:
         for name in names:
             target = IMAGES / PICTURES[name].file
-            Image.fromarray(PICTURES[name].draw(Path(folder))).save(
-                target, optimize=True, quality=82
-            )
+            image = Image.fromarray(PICTURES[name].draw(chosen.runs or Path(folder)))
+            image.save(target, optimize=True, quality=82)
             print(f"{target}: {target.stat().st_size / 1e3:.0f} kB")
 
 
