@@ -1,4 +1,4 @@
-"""How fast campaigns are: missions an hour, overhead over a bare loop, memory over thousands.
+"""How fast campaigns are: missions an hour, overhead over a bare loop.
 
 The mission is `untangle` for a few seconds of the robot's clock. A bare loop runs it over and
 over in one process that has everything loaded; a campaign runs the same seeds right after it,
@@ -19,7 +19,7 @@ from pathlib import Path
 
 import psutil
 
-from benchmarks.campaign_missions import bare_loop, campaign, seconds, write_trivial
+from benchmarks.campaign_missions import bare_loop, campaign, seconds
 from benchmarks.harness import Row, median
 from executive.app.campaigns.campaign import Where
 
@@ -30,12 +30,10 @@ BLOCK = 4
 WARM = 10**6
 """Seed of the run that is not timed."""
 
-_MB = 2**20
-
 
 def run(quick: bool, seed: int) -> Sequence[Row]:
-    """Time blocks, then throughput, then thousands of trivial missions."""
-    blocks, runs, trivial, length_s = (2, 4, 300, 2.0) if quick else (8, 16, 10_000, 6.0)
+    """Time blocks, then throughput."""
+    blocks, runs, length_s = (2, 4, 2.0) if quick else (6, 12, 6.0)
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         rows = _overhead(folder, seed, blocks, length_s)
@@ -44,7 +42,7 @@ def run(quick: bool, seed: int) -> Sequence[Row]:
         with dask_cluster() as address:
             where = Where(scheduler=address)
             rows.append(_throughput(folder / "cluster_of_2", seed, runs, length_s, where))
-        return rows + _trivial(folder, seed, trivial)
+        return rows
 
 
 def _overhead(folder: Path, seed: int, blocks: int, length_s: float) -> list[Row]:
@@ -138,42 +136,3 @@ def _free_port() -> int:
         one.bind(("127.0.0.1", 0))
         port: int = one.getsockname()[1]
         return port
-
-
-def _trivial(folder: Path, seed: int, count: int) -> list[Row]:
-    """Run thousands of missions of one node; watch this process and those that it has."""
-    one = campaign(write_trivial(folder), range(seed, seed + count), folder / "trivial")
-    began_s, sizes = time.perf_counter(), []
-    for place, _ in enumerate(one.run(Where(2))):
-        if place % max(1, count // 100) == 0:
-            sizes.append(_all_mb())
-    took_s = time.perf_counter() - began_s
-    settled = sizes[len(sizes) // 10 :]  # everything is loaded by then
-    tenth = max(1, len(settled) // 10)
-    first, last = (sorted(part)[len(part) // 2] for part in (settled[:tenth], settled[-tenth:]))
-    kept = sum(1 for _ in one.folder.records())
-    return [
-        Row("trivial_missions_kept", kept, "1", count, kept, kept, f"= {count}"),
-        Row("trivial_missions_per_s", count / took_s, "1/s", count, count / took_s, count / took_s),
-        Row(
-            "trivial_memory_growth",
-            last / first,
-            "1",
-            len(settled),
-            last / first,
-            last / first,
-            "<= 1.1",
-        ),
-        median("trivial_memory_mb", settled, "MB"),
-    ]
-
-
-def _all_mb() -> float:
-    """Return the memory of this process and of those that stay [MB]."""
-    this, total = psutil.Process(), 0.0
-    for one in (this, *this.children()):
-        try:
-            total += one.memory_info().rss
-        except psutil.NoSuchProcess:
-            continue
-    return total / _MB
