@@ -10,9 +10,9 @@ from pathlib import Path
 
 import numpy as np
 
+from executive.app.campaigns.figures import Z, wilson
+
 RESULTS = Path(__file__).parent / "results"
-# 97.5 % quantile of the normal distribution: intervals hold 95 %.
-Z = 1.959964
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,11 +52,9 @@ class Benchmark:
 
 
 def share(name: str, hits: int, n: int, goal: str = "") -> Row:
-    """Return a share with its Wilson interval (E. B. Wilson, JASA 1927)."""
-    p, z2 = hits / n, Z * Z
-    centre = (p + z2 / (2 * n)) / (1 + z2 / n)
-    half = Z / (1 + z2 / n) * math.sqrt(p * (1 - p) / n + z2 / (4 * n * n))
-    return Row(name, p, "1", n, max(0.0, centre - half), min(1.0, centre + half), goal)
+    """Return a share with its Wilson interval."""
+    p, low, high = wilson(hits, n)
+    return Row(name, p, "1", n, low, high, goal)
 
 
 def median(name: str, samples: Sequence[float], unit: str, goal: str = "") -> Row:

@@ -9,7 +9,7 @@ import numpy as np
 from executive.app.campaigns.jobs import RunRecord
 
 SUCCESS = "success"
-_Z = 1.959964
+Z = 1.959964
 """97.5 % quantile of the normal distribution."""
 
 
@@ -63,16 +63,15 @@ def figures(records: Iterable[RunRecord]) -> list[Figure]:
 def figure(name: str, values: Sequence[float | bool]) -> Figure:
     """Return the share of what is true or false, the mean of anything else."""
     is_share = all(isinstance(value, bool) for value in values)
-    interval = _wilson(values) if is_share else _mean(values)
+    interval = wilson(sum(values), len(values)) if is_share else _mean(values)
     return Figure(name, *interval, len(values), is_share)
 
 
-def _wilson(values: Sequence[float | bool]) -> tuple[float, float, float]:
-    """Return a share with its interval (E. B. Wilson, JASA 1927)."""
-    n, z2 = len(values), _Z * _Z
-    p = sum(values) / n
+def wilson(hits: float, n: int) -> tuple[float, float, float]:
+    """Return a share and the ends of its interval (E. B. Wilson, JASA 1927)."""
+    p, z2 = hits / n, Z * Z
     centre = (p + z2 / (2 * n)) / (1 + z2 / n)
-    half = _Z / (1 + z2 / n) * math.sqrt(p * (1 - p) / n + z2 / (4 * n * n))
+    half = Z / (1 + z2 / n) * math.sqrt(p * (1 - p) / n + z2 / (4 * n * n))
     return p, max(0.0, centre - half), min(1.0, centre + half)
 
 
