@@ -4,7 +4,9 @@ An open cable is closed by a straight piece that passes over everything (thesis,
 2.2). Diagrams live on the sphere, so any other way over everything gives the same knot.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import combinations, pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,10 +15,15 @@ from perception.cable.topology.diagram import Diagram
 
 Floats = NDArray[np.float64]
 Indices = NDArray[np.intp]
+# Position on a closed curve, number of the crossing, and whether the strand is on top.
+Visit = tuple[float, int, bool]
 
 # Segments are looked at in blocks, for speed.
 BLOCK = 8
 TOUCHING = 1e-9
+# Visits nearer than this to each other [segments] may come in the other order; so many pairs are
+# tried, so many of them at once.
+NEAR, MOST_NEAR, MOST_EXCHANGED = 0.25, 8, 3
 
 
 @dataclass(frozen=True, slots=True)
@@ -147,20 +154,58 @@ def curve_crossings(nodes: Floats) -> Strand:
 def close_over(strand: Strand) -> Diagram:
     """Return the diagram of an open curve closed by a chord over everything.
 
-    Crossings keep their numbers; those of the chord are numbered after them.
+    Crossings keep their numbers; those of the chord are numbered after them. Where crossings are
+    so near to each other that their order along the curve is not known for certain, it is taken
+    so that the diagram can be drawn in the plane.
     """
-    visits: list[tuple[float, int, bool]] = []
+    visits: list[Visit] = []
     signs: list[int] = []
     for number, crossing in enumerate(strand.crossings):
         visits.append((crossing.first, number, crossing.first_over))
         visits.append((crossing.second, number, not crossing.first_over))
         signs.append(crossing.turn if crossing.first_over else -crossing.turn)
     last = len(strand.points) - 1
-    on_chord, on_curve, turn = intersections(strand.points[[-1, 0]], strand.points)
+    chord = strand.points[[-1, 0]]
+    on_chord, on_curve, turn = intersections(chord, strand.points)
     inside = (on_curve >= 1.0) & (on_curve <= last - 1.0)
-    for s, position, t in zip(on_chord[inside], on_curve[inside], turn[inside], strict=True):
+    along = on_chord[inside] * _segments_long(chord, strand.points)
+    for s, position, t in zip(along, on_curve[inside], turn[inside], strict=True):
         visits.append((last + 1.0 + float(s), len(signs), True))
         visits.append((float(position), len(signs), False))
         signs.append(int(t))
     visits.sort()
+    diagram = _diagram(visits, signs)
+    return diagram if diagram.is_planar() else _drawable(visits, signs) or diagram
+
+
+def _segments_long(chord: Floats, points: Floats) -> float:
+    """Return how many of a curve's segments a chord is long."""
+    mean = float(np.linalg.norm(np.diff(points, axis=0), axis=1).mean())
+    return float(np.linalg.norm(chord[1] - chord[0])) / max(mean, TOUCHING)
+
+
+def _diagram(visits: Sequence[Visit], signs: Sequence[int]) -> Diagram:
     return Diagram(tuple(v[1] for v in visits), tuple(v[2] for v in visits), tuple(signs))
+
+
+def _drawable(visits: Sequence[Visit], signs: Sequence[int]) -> Diagram | None:
+    """Return a planar diagram with a few near visits exchanged; None where there is none.
+
+    Of crossings that were found on a smoothed curve, or are left of several that lay on each
+    other, the order is not sure.
+    """
+    gaps = sorted(
+        (after[0] - before[0], k)
+        for k, (before, after) in enumerate(pairwise(visits))
+        if before[1] != after[1]
+    )
+    near = [k for gap, k in gaps if gap < NEAR][:MOST_NEAR]
+    for count in range(1, MOST_EXCHANGED + 1):
+        for chosen in combinations(near, count):
+            order = list(visits)
+            for k in chosen:
+                order[k], order[k + 1] = order[k + 1], order[k]
+            diagram = _diagram(order, signs)
+            if diagram.is_planar():
+                return diagram
+    return None
