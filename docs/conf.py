@@ -17,8 +17,10 @@ html_title = "Cellwright"
 html_show_sourcelink = False
 html_show_copyright = False
 
+# Names between single backticks are code, as in Markdown.
+default_role = "code"
 # Docstrings are in Google style; types stand in the signatures.
-autodoc_default_options = {"members": True, "show-inheritance": True, "member-order": "bysource"}
+autodoc_default_options = {"members": True, "member-order": "bysource"}
 autodoc_typehints = "signature"
 napoleon_numpy_docstring = False
 napoleon_use_ivar = True
