@@ -25,7 +25,7 @@ from benchmarks.harness import Row, mean, median, percentile_95, share
 from benchmarks.search_bounds import least_moves
 from benchmarks.search_ours import search_ours
 from benchmarks.search_trials import Way, poses_of, search_by
-from benchmarks.searching import Trial
+from benchmarks.searching import SHOWN, Trial
 from executive.core.errors import InputError
 from perception.shelf.affinity import AffinityMatrix, Origin, affinity_from_scores
 from perception.shelf.hidden_poses import HiddenPoses
@@ -161,7 +161,9 @@ def solve(job: Job) -> dict[str, Trial]:
 def _pushes_may_solve(scene: Scene, reach: Reach) -> bool:
     """Say whether there is no proof that pushes cannot solve a scene."""
     target, camera = scene.names.index(scene.target), front_camera(scene.shelf)
-    return pushes_may_show(scene.boxes, target, scene.shelf, camera, reach.gap_m)
+    return pushes_may_show(
+        scene.boxes, target, scene.shelf, camera, reach.gap_m, share=SHOWN, by_sight=reach.by_sight
+    )
 
 
 def run(quick: bool, seed: int) -> Sequence[Row]:

@@ -7,8 +7,9 @@ hardly a way at all. It is a bound from above on the fewest moves, since beams a
 import numpy as np
 
 from benchmarks.searching import SHOWN, Trial
+from perception.shelf.planning.choosing import best_plan
 from perception.shelf.planning.free_floor import CELL_M
-from perception.shelf.planning.looking_ahead import ANYHOW, FIXED, Depth, Situation, look_ahead
+from perception.shelf.planning.looking_ahead import ANYHOW, UNSEEN, Depth, Situation
 from perception.shelf.planning.room import Reach, footprints
 from perception.shelf.types import Box
 from simulation.shelf.scenes import Scene
@@ -25,7 +26,7 @@ def least_moves(scene: Scene, reach: Reach) -> Trial:
     for actions in range(limit + 1):
         if world.visible_share(scene.target) >= SHOWN:
             return Trial(True, actions)
-        plan = look_ahead(_situation(world, scene, reach, been), DEEP) if actions < limit else None
+        plan = best_plan(_situation(world, scene, reach, been), DEEP) if actions < limit else None
         if plan is None:
             return Trial(False, actions, stuck=True)
         move = plan.moves[0]
@@ -47,7 +48,7 @@ def _situation(
         camera=world.camera,
         labels=labels,
         boxes=tuple(world.boxes[name] for name in labels),
-        movable=np.array([ANYHOW if name in seen else FIXED for name in labels]),
+        movable=np.array([ANYHOW if name in seen else UNSEEN for name in labels]),
         met=footprints([target]),
         floor=np.ones(cells, dtype=bool),
         cell_m=CELL_M,

@@ -20,6 +20,7 @@ class SeenObject:
         probabilities: Of each name of the stock, from its best reading so far, shape (N,).
         box: Where it stands, as far as its known size completes what is seen.
         sure: The part of that box that is there whatever is hidden of it.
+        loose_m: How far along x and y the box may stand elsewhere, to either side.
         first: Where it stood when it was first seen.
         number: Which segment of the latest detections shows it, or `OUT_OF_VIEW`.
         share: How much of it the latest view shows, in [0, 1].
@@ -31,6 +32,7 @@ class SeenObject:
     probabilities: Floats
     box: Box
     sure: Box
+    loose_m: tuple[float, float]
     first: Box
     number: int
     share: float
@@ -49,6 +51,7 @@ class ShelfBelief:
         plausible: How far looks have left it possible there, in (0, 1], shape (K,).
         weights: Probability of each cell, shape (K,); adds up to 1.
         organisation: Estimated share of objects that stand where they belong, in [0, 1].
+        unseen: Where a small thing may stand that no look has shown; see `planning.exploring`.
         floor: Which cells of the floor are known to be free, shape (nx, ny).
         met: Footprints of what moves have met and nothing seen explains, shape (M, 4).
         been: Where objects were moved from, or could not be moved to, label and box, in order.
@@ -63,6 +66,7 @@ class ShelfBelief:
     plausible: Floats
     weights: Floats
     organisation: float
+    unseen: Bools
     floor: Bools
     met: Floats
     been: tuple[tuple[str, Box], ...]

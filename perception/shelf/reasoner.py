@@ -13,19 +13,14 @@ from perception.shelf.casting import BoxCaster
 from perception.shelf.coarsening import coarser, coarser_camera
 from perception.shelf.detections import Detections
 from perception.shelf.drawing import drawn_belief
-from perception.shelf.hidden_poses import HiddenPoses
+from perception.shelf.hidden_poses import HiddenPoses, PoseRules
 from perception.shelf.interfaces import object_of
 from perception.shelf.organisation import organisation_of
+from perception.shelf.planning.choosing import best_plan
 from perception.shelf.planning.contacts import contact_of
+from perception.shelf.planning.exploring import RULES, THING_M
 from perception.shelf.planning.free_floor import CELL_M, covered_cells, free_cells
-from perception.shelf.planning.looking_ahead import (
-    ANYHOW,
-    FIXED,
-    UNSEEN,
-    Depth,
-    Situation,
-    look_ahead,
-)
+from perception.shelf.planning.looking_ahead import ANYHOW, FIXED, UNSEEN, Situation
 from perception.shelf.planning.moves import Move, Plan, moved_box
 from perception.shelf.planning.room import Reach, footprints, overlapping
 from perception.shelf.planning.tidying import tidying_move
@@ -34,10 +29,10 @@ from perception.shelf.refining import refined
 from perception.shelf.semantic import floor_semantics
 from perception.shelf.stock import Stock
 from perception.shelf.tracking import Look, tracked
-from perception.shelf.types import Bools, Box, Floats, ShelfView, Sighting
+from perception.shelf.types import Bools, Box, Floats, ShelfView, Sighting, Size
 
 # So many cameras' rays and silhouettes are kept: they cost more than everything else.
-KEPT = 8
+KEPT = 16
 # How likely a look is to be mistaken that rules a place out. What is ruled out comes up again when
 # nothing else is left: places of what is seen are known to some millimetres alone.
 MISTAKEN = 1e-3
@@ -52,6 +47,8 @@ GLIMPSE_M = 0.02
 WORTH_A_MOVE = 0.2
 # After these failures an object is not where it was, and must be looked for.
 GONE = ("push.nothing_there", "suction.lost")
+# After this one something stands beside it.
+BLOCKED = "push.blocked"
 
 
 class SearchReasoner:
@@ -101,6 +98,7 @@ class SearchReasoner:
             plausible=np.ones(count),
             weights=np.full(count, 1.0 / count),
             organisation=0.5,
+            unseen=np.ones(self._things(self._camera).count, dtype=bool),
             floor=np.zeros(cells, dtype=bool),
             met=np.zeros((0, 4)),
             been=(),
@@ -120,12 +118,14 @@ class SearchReasoner:
         view = ShelfView(frame.depth_m, detections.segments, numbers, frame.camera)
         objects = tracked(Look(view, detections, caster), belief.objects, self._stock)
         poses = self._hidden(frame.camera, belief.target)
-        possible = poses.feasible(view, _others(objects, detections, belief.target))
+        others = _others(objects, detections, belief.target)
+        possible = poses.feasible(view, others)
         plausible = np.where(possible, belief.plausible, belief.plausible * MISTAKEN)
         seen = replace(
             belief,
             objects=objects,
             plausible=np.maximum(plausible, MISTAKEN**2),
+            unseen=belief.unseen & self._things(frame.camera).feasible(view, others),
             floor=self._floor(belief, view, caster, objects),
             looks=belief.looks + 1,
         )
@@ -137,13 +137,8 @@ class SearchReasoner:
     def choose(self, belief: ShelfBelief) -> Plan | None:
         """See `ShelfReasoning`."""
         # Something that was taken for the target may be something else that hides it.
-        others = self.removed(belief, belief.target)
-        return (
-            self._nearer_look(belief)
-            or look_ahead(self._situation(others), Depth())
-            # Where all has been tried, it is tried again: the shelf has changed meanwhile.
-            or look_ahead(self._situation(replace(others, been=(), met=belief.met[:0])), Depth())
-        )
+        situation = self._situation(self.removed(belief, belief.target))
+        return self._nearer_look(belief) or best_plan(situation)
 
     def clear_way(self, belief: ShelfBelief, label: str) -> Move | None:
         """See `ShelfReasoning`."""
@@ -156,19 +151,13 @@ class SearchReasoner:
     def moved(self, belief: ShelfBelief, label: str, box: Box, met: Floats) -> ShelfBelief:
         """See `ShelfReasoning`."""
         before = object_of(belief, label)
-        objects = tuple(
-            replace(one, box=box, sure=box) if one.label == label else one for one in belief.objects
-        )
         if before is None:
-            return _meeting(replace(belief, objects=objects), met)
-        plausible = belief.plausible * self._felt(belief, before.box, box, met)
-        moved = replace(
-            belief,
-            objects=objects,
-            been=(*belief.been, (label, before.box)),
-            plausible=np.maximum(plausible / plausible.max(), MISTAKEN**2),
-        )
-        return _meeting(moved, met)
+            return _meeting(belief, met, felt=True)
+        objects = tuple(_stood(one, box) if one.label == label else one for one in belief.objects)
+        moved = replace(belief, objects=objects, been=(*belief.been, (label, before.box)))
+        if before.box.y_m == box.y_m:
+            moved = self._swept(moved, before.box, box)
+        return _meeting(moved, met, felt=True)
 
     def refused(self, belief: ShelfBelief, move: Move, failure: str) -> ShelfBelief:
         """See `ShelfReasoning`."""
@@ -179,7 +168,8 @@ class SearchReasoner:
             return self.removed(belief, move.label)
         tried = (move.label, moved_box(move, thing.box))
         belief = replace(belief, been=(*belief.been, tried))
-        return _meeting(belief, contact_of(move, thing.box, failure)[None])
+        met = contact_of(move, thing.box, failure)[None]
+        return _meeting(belief, met, felt=failure == BLOCKED)
 
     def removed(self, belief: ShelfBelief, label: str) -> ShelfBelief:
         """See `ShelfReasoning`."""
@@ -191,25 +181,21 @@ class SearchReasoner:
         if found is None or found.certainty < WORTH_A_MOVE:
             return None
         move = self.clear_way(belief, belief.target)
-        return None if move is None else Plan((move,), found.certainty, 1.0 / found.certainty)
+        if move is None:
+            return None
+        return Plan((move,), found.certainty, 1.0 / found.certainty, found.certainty)
 
-    def _felt(self, belief: ShelfBelief, start: Box, end: Box, met: Floats) -> Floats:
-        """Return how likely each place is by how a move went, shape (K,).
-
-        Where an object was pushed along, the target is not; what it met unseen may be the target.
-        """
-        likely = np.ones(len(belief.places_m))
-        if start.y_m == end.y_m:
-            middle_m, wide_m = 0.5 * (start.x_m + end.x_m), abs(end.x_m - start.x_m)
-            width_m, depth_m, height_m = start.size_m
-            swept = Box(middle_m, start.y_m, (width_m + wide_m, depth_m, height_m))
-            taken = self._hidden(self._camera, belief.target).overlaps(swept)
-            likely = np.where(taken, MISTAKEN, likely)
-        half_m = 0.5 * np.array(belief.target_m[:2]) + TOUCHING_M
-        here = np.hstack([belief.places_m - half_m, belief.places_m + half_m])
-        for row in met:
-            likely = likely * np.where(overlapping(row, here), 1.0, NOT_MET)
-        return likely
+    def _swept(self, belief: ShelfBelief, start: Box, end: Box) -> ShelfBelief:
+        """Return what is believed after a push: what was pushed through holds nothing."""
+        width_m, depth_m, height_m = start.size_m
+        middle_m, wide_m = 0.5 * (start.x_m + end.x_m), abs(end.x_m - start.x_m)
+        swept = Box(middle_m, start.y_m, (width_m + wide_m, depth_m, height_m))
+        taken = self._hidden(self._camera, belief.target).overlaps(swept)
+        return replace(
+            belief,
+            plausible=_rescaled(np.where(taken, MISTAKEN, 1.0) * belief.plausible),
+            unseen=belief.unseen & ~self._things(self._camera).overlaps(swept),
+        )
 
     def _situation(self, belief: ShelfBelief, staying: str = "") -> Situation:
         fixed = {belief.target, staying}
@@ -230,6 +216,7 @@ class SearchReasoner:
             places_m=belief.places_m,
             weights=belief.weights,
             been=belief.been,
+            unseen_m=self._things(self._camera).places_m[belief.unseen],
         )
 
     def _movable(self, one: SeenObject) -> int:
@@ -270,18 +257,45 @@ class SearchReasoner:
         return self._casters[key]
 
     def _hidden(self, camera: CameraModel, target: str) -> HiddenPoses:
-        key = (_key(camera), target)
+        return self._laid_out(camera, target, self._stock.product(target).size_m)
+
+    def _things(self, camera: CameraModel) -> HiddenPoses:
+        """Return the poses of a small thing that may be anywhere."""
+        return self._laid_out(camera, "", THING_M, RULES)
+
+    def _laid_out(
+        self, camera: CameraModel, name: str, size_m: Size, rules: PoseRules | None = None
+    ) -> HiddenPoses:
+        key = (_key(camera), name)
         if key not in self._poses:
-            size_m = self._stock.product(target).size_m
-            self._poses[key] = HiddenPoses(size_m, self._stock.shelf, self._caster(camera))
+            caster = self._caster(camera)
+            self._poses[key] = HiddenPoses(size_m, self._stock.shelf, caster, rules)
             if len(self._poses) > KEPT:
                 self._poses.popitem(last=False)
         return self._poses[key]
 
 
-def _meeting(belief: ShelfBelief, met: Floats) -> ShelfBelief:
-    """Add what was met, shape (M, 4)."""
-    return replace(belief, met=np.vstack([belief.met, met]))
+def _stood(one: SeenObject, box: Box) -> SeenObject:
+    """Return an object where it stands after a move; what is sure of it has moved as far."""
+    x_m, y_m = one.sure.x_m + box.x_m - one.box.x_m, one.sure.y_m + box.y_m - one.box.y_m
+    return replace(one, box=box, sure=one.sure.at(x_m, y_m))
+
+
+def _meeting(belief: ShelfBelief, met: Floats, *, felt: bool) -> ShelfBelief:
+    """Add what was met, shape (M, 4); what is felt beside an object may be the target."""
+    half_m = 0.5 * np.array(belief.target_m[:2]) + TOUCHING_M
+    here = np.hstack([belief.places_m - half_m, belief.places_m + half_m])
+    likely = belief.plausible
+    for row in met if felt else ():
+        # What was met before at the same place tells nothing new.
+        if not overlapping(row, belief.met).any():
+            likely = likely * np.where(overlapping(row, here), 1.0, NOT_MET)
+    return replace(belief, met=np.vstack([belief.met, met]), plausible=_rescaled(likely))
+
+
+def _rescaled(plausible: Floats) -> Floats:
+    scaled: Floats = np.maximum(plausible / plausible.max(), MISTAKEN**2)
+    return scaled
 
 
 def _unexplained(belief: ShelfBelief) -> Floats:

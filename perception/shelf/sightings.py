@@ -7,6 +7,7 @@ import numpy as np
 from scipy.ndimage import find_objects
 
 from perception.shelf.casting import BoxCaster
+from perception.shelf.completing import completed
 from perception.shelf.types import Bools, Box, Floats, Shelf, ShelfView, Sighting, Size
 
 # Thinnest that an object of unknown size is taken to be (thesis, section 5.2: S_min).
@@ -45,7 +46,7 @@ def sightings(
             size_m = sizes_m.get(label)
             box, sure = _boxes(points_m[window], depth_m[window], known, size_m, shelf, caster)
             found.append(Sighting(label, view.segments == index, box, sure))
-    return tuple(found)
+    return completed(found, view, shelf, caster)
 
 
 def _windows(view: ShelfView) -> list[tuple[slice, slice] | None]:

@@ -8,6 +8,7 @@ from scipy.optimize import linear_sum_assignment
 
 from perception.shelf.beliefs import OUT_OF_VIEW, SeenObject
 from perception.shelf.casting import BoxCaster
+from perception.shelf.completing import clear_of
 from perception.shelf.detections import LEAST, Detections, entropy_bits
 from perception.shelf.planning.room import footprints
 from perception.shelf.sightings import sightings
@@ -71,6 +72,7 @@ def tracked(look: Look, before: Sequence[SeenObject], stock: Stock) -> tuple[See
                 rows[number],
                 sighting.box,
                 sighting.sure,
+                sighting.loose_m,
                 sighting.box,
                 number,
                 shares[number],
@@ -80,10 +82,11 @@ def tracked(look: Look, before: Sequence[SeenObject], stock: Stock) -> tuple[See
         )
         for number, sighting in seen.items()
     )
-    return fresh + tuple(
+    hidden = tuple(
         replace(one, label=name, certainty=_certainty(one.probabilities, name, stock))
         for one, name in zip(kept, names[len(readings) :], strict=True)
     )
+    return _settled(fresh + hidden)
 
 
 def unique_names(rows: Floats, names: tuple[str, ...]) -> tuple[str, ...]:
@@ -156,15 +159,58 @@ def _agreement(here: Floats, there: Floats) -> Floats:
 
 
 def _measured(now: SeenObject, before: SeenObject | None) -> SeenObject:
-    """Return an object where it was measured best: slivers tell little of where the rest is."""
+    """Return an object where all that was measured of it agrees."""
     if before is None:
         return now
+    now = replace(now, first=before.first)
     sure, known = footprints([now.sure, before.box])
-    inside = (sure[:2] > known[:2] - SAME_M).all() and (sure[2:] < known[2:] + SAME_M).all()
-    alike = now.box.size_m == before.box.size_m
-    if not (inside and alike and now.share < before.measured):
-        return replace(now, first=before.first)
-    return replace(now, first=before.first, box=before.box, measured=before.measured)
+    wide_m = SAME_M + np.array(before.loose_m)
+    inside = (sure[:2] > known[:2] - wide_m).all() and (sure[2:] < known[2:] + wide_m).all()
+    if not inside or now.box.size_m != before.box.size_m:
+        return now
+    better = before if before.measured > now.share else now
+    x_m, loose_x_m = _agreed(now.box.x_m, before.box.x_m, better.box.x_m, now, before, 0)
+    y_m, loose_y_m = _agreed(now.box.y_m, before.box.y_m, better.box.y_m, now, before, 1)
+    return replace(
+        now, box=now.box.at(x_m, y_m), loose_m=(loose_x_m, loose_y_m), measured=better.measured
+    )
+
+
+def _agreed(
+    here_m: float, there_m: float, better_m: float, now: SeenObject, before: SeenObject, axis: int
+) -> tuple[float, float]:
+    """Return the middle of where two ranges overlap and how loose it is; else the better one."""
+    loose_m, was_m = now.loose_m[axis], before.loose_m[axis]
+    low_m, high_m = max(here_m - loose_m, there_m - was_m), min(here_m + loose_m, there_m + was_m)
+    if low_m <= high_m and max(loose_m, was_m) > SAME_M:
+        return 0.5 * (low_m + high_m), 0.5 * (high_m - low_m)
+    if abs(loose_m - was_m) > SAME_M:
+        return (here_m, loose_m) if loose_m < was_m else (there_m, was_m)
+    return better_m, min(loose_m, was_m)
+
+
+def _settled(objects: tuple[SeenObject, ...]) -> tuple[SeenObject, ...]:
+    """Return objects whose place is loose in the middle of where no other one stands."""
+    sure = footprints([one.sure for one in objects])
+    settled = []
+    for index, one in enumerate(objects):
+        places_m = _tried(one)
+        if len(places_m) > 1:
+            free = clear_of(one.box, places_m, np.delete(sure, index, axis=0))
+            if free.any() and not free.all():
+                low_m, high_m = float(places_m[free, 0].min()), float(places_m[free, 0].max())
+                box = one.box.at(0.5 * (low_m + high_m), one.box.y_m)
+                one = replace(one, box=box, loose_m=(0.5 * (high_m - low_m), one.loose_m[1]))
+        settled.append(one)
+    return tuple(settled)
+
+
+def _tried(one: SeenObject) -> Floats:
+    """Return places along x where an object that is loose may stand, shape (K, 2)."""
+    loose_m = one.loose_m[0] if one.loose_m[0] > SAME_M else 0.0
+    count = 1 + round(2.0 * loose_m / SAME_M)
+    x_m = one.box.x_m + np.linspace(-loose_m, loose_m, count)
+    return np.column_stack([x_m, np.full(count, one.box.y_m)])
 
 
 def _shares(look: Look, seen: dict[int, Sighting]) -> dict[int, float]:

@@ -102,9 +102,11 @@ class Sighting:
         mask: Pixels that show it, shape (height, width).
         box: Where it stands, as far as its known size completes what is seen.
         sure: The part of that box that is there whatever is hidden of it.
+        loose_m: How far along x and y the box may stand elsewhere, to either side.
     """
 
     label: str
     mask: Bools
     box: Box
     sure: Box
+    loose_m: tuple[float, float] = (0.0, 0.0)

@@ -96,11 +96,11 @@ def blade_fits(
 def _ahead(own: Floats, other: Floats, sign: int, gap: float, room: float) -> float:
     if min(own[3], other[3]) - max(own[1], other[1]) <= TOUCH_M:
         return room
-    if sign > 0 and other[0] >= own[2] - TOUCH_M:
-        return min(room, other[0] - own[2] - gap)
-    if sign < 0 and other[2] <= own[0] + TOUCH_M:
-        return min(room, own[0] - other[2] - gap)
-    return room
+    # Places are known to some millimetres: what seems to overlap stands there all the same.
+    ahead = sign * (other[0] + other[2] - own[0] - own[2]) >= 0.0
+    if not ahead:
+        return room
+    return min(room, (other[0] - own[2] if sign > 0 else own[0] - other[2]) - gap)
 
 
 @kernel

@@ -7,14 +7,14 @@ is estimated to come after its end: for each hidden pose the least effort to unc
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from perception.camera import CameraModel
 from perception.shelf.planning.kernels import Ints, assess, consider, moves_from
 from perception.shelf.planning.moves import Move, Place, Plan, Push
-from perception.shelf.planning.outlook import outlook, restricted
+from perception.shelf.planning.outlook import COARSE, Grain, outlook, restricted
 from perception.shelf.planning.partings import partings, pushes_of
 from perception.shelf.planning.room import Reach, footprints
 from perception.shelf.types import Bools, Box, Floats, Shelf, Size
@@ -31,8 +31,8 @@ HASTE_1_M = 1e-3
 PARTED, WEIGHED = 40, 80
 # A plan that makes no more moves for a find needs no parting, which is of two moves or more.
 EASY = 2.0
-# What shows less of the target's probability shows nothing.
-LEAST_SHOWN = 1e-3
+# What finds less of the target's probability finds nothing.
+LEAST_FOUND = 1e-3
 # So many children of a branch compete for each place in the beam.
 SHORTLIST = 4
 
@@ -75,6 +75,7 @@ class Situation:
         places_m: Where its centre may be, shape (K, 2).
         weights: Probability of each place, shape (K,).
         been: Where objects were moved from, or could not be moved to: none is brought there.
+        unseen_m: Where a small thing may stand that nobody has seen, shape (U, 2).
     """
 
     shelf: Shelf
@@ -90,6 +91,7 @@ class Situation:
     places_m: Floats
     weights: Floats
     been: Sequence[tuple[str, Box]] = ()
+    unseen_m: Floats = field(default_factory=lambda: np.zeros((0, 2)))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -108,17 +110,20 @@ class _Branch:
     def toil(self) -> float:
         """How many moves it makes for each time that it finds the target."""
         found = 1.0 - self.unfound
-        return (self.spent - self.unfound) / found if found > LEAST_SHOWN else np.inf
+        return (self.spent - self.unfound) / found if found > LEAST_FOUND else np.inf
 
 
-def look_ahead(situation: Situation, depth: Depth | None = None) -> Plan | None:
+def look_ahead(
+    situation: Situation, depth: Depth | None = None, grain: Grain = COARSE
+) -> Plan | None:
     """Return the best sequence of moves, or None when nothing that helps can be moved.
 
     Args:
         situation: What is known.
         depth: How far to look; None for the defaults.
+        grain: How finely it is judged what shows.
     """
-    return _Search(situation, depth or Depth()).best()
+    return _Search(situation, depth or Depth(), grain).best()
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -165,18 +170,21 @@ def _named(label: str, own: Floats, by_cup: bool, corner: Floats) -> Move:
 class _Search:
     """One decision."""
 
-    def __init__(self, situation: Situation, depth: Depth) -> None:
-        self._situation, self._depth = situation, depth
+    def __init__(self, situation: Situation, depth: Depth, grain: Grain) -> None:
+        self._situation, self._depth, self._grain = situation, depth, grain
         self._inputs = kernel_inputs(situation, depth)
         poses, weights = _blocks(situation, depth.block_m)
-        self._view = outlook(situation.camera, situation.places_m[poses], situation.target_m)
+        places_m = situation.places_m[poses]
+        self._view = outlook(situation.camera, places_m, situation.target_m, grain)
         weights = self._hidden(weights)
-        kept = _likely(weights)
-        self._places_m = situation.places_m[poses][kept]
+        kept = _likely(weights) if weights.any() else np.zeros(0, dtype=np.int64)
+        self._places_m = places_m[kept]
         self._view = restricted(self._view, kept)
         self._weights = weights[kept] / weights[kept].sum()
 
     def best(self) -> Plan | None:
+        if not len(self._weights):
+            return None
         ahead = self._by_beam()
         if ahead is not None and ahead.toil <= EASY:
             return _plan(ahead)
@@ -211,6 +219,7 @@ class _Search:
             self._view,
             self._places_m,
             likely[self._weights[likely] > 0.0],
+            self._grain,
         )
         start = _Branch(inputs.boxes, self._weights, 1.0, 1.0, np.inf)
         best: _Branch | None = None
@@ -246,7 +255,7 @@ class _Search:
                 spent=branch.spent + unfound,
                 shows=(*branch.shows, shown),
             )
-        return branch if branch.unfound < 1.0 - LEAST_SHOWN else None
+        return branch if branch.unfound < 1.0 - LEAST_FOUND else None
 
     def _hidden(self, weights: Floats) -> Floats:
         """Return the weights of the poses that do not show already, by a hair of their block.
@@ -255,9 +264,7 @@ class _Search:
         """
         seen, _, _ = self._assess(self._inputs.boxes, np.ones(len(weights)))
         hidden = np.where(seen == 1, 0.0, weights)
-        if hidden.sum() > 0.0:
-            return hidden
-        return np.where(seen == 1, 0.0, 1.0) if (seen == 0).any() else weights
+        return hidden if hidden.sum() > 0.0 else np.where(seen == 1, 0.0, 1.0)
 
     def _children(self, branch: _Branch) -> list[_Branch]:
         """Return the branch with each of the best next moves, not yet carried out."""
@@ -327,7 +334,9 @@ class _Search:
 
 
 def _plan(branch: _Branch | None) -> Plan | None:
-    return None if branch is None else Plan(branch.moves, branch.shows[0], branch.cost)
+    if branch is None:
+        return None
+    return Plan(branch.moves, branch.shows[0], branch.cost, 1.0 - branch.unfound)
 
 
 def _best(branches: list[_Branch], most: int) -> list[_Branch]:

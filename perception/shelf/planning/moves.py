@@ -54,8 +54,10 @@ class Plan:
         moves: The moves; only the first is to be made before the next look.
         shows: Probability that the first one shows the target.
         expected_moves: How many moves are expected to be needed.
+        finds: Probability that all of them together show it.
     """
 
     moves: tuple[Move, ...]
     shows: float
     expected_moves: float
+    finds: float

@@ -10,10 +10,6 @@ from perception.shelf.planning.kernels import Ints, kernel
 from perception.shelf.types import Bools, Floats
 
 TOUCH_M = 1e-6
-# What goes aside leaves so much on its side of the line of sight.
-CLEAR_M = 0.008
-# The line of sight ends at this share of the target's height.
-SIGHT = 0.8
 # With more objects across one line of sight, it is not thought of.
 MOST_ACROSS = 6
 
@@ -28,6 +24,8 @@ def part_columns(
     slopes: Floats,
     depths: Floats,
     tops: Floats,
+    clear_m: float,
+    sight: float,
 ) -> tuple[Ints, Floats]:
     """Return for each line of sight how many things go aside, -1 for none, and where all are then.
 
@@ -42,14 +40,17 @@ def part_columns(
         slopes: Direction of each line, x over depth, shape (E,).
         depths: Depth of the target there.
         tops: Its elevation there.
+        clear_m: What goes aside leaves so much on its side of the line.
+        sight: The line ends at this share of the target's height.
     """
     count = len(things)
     half, now = 0.5 * (things[:, 2] - things[:, 0]), 0.5 * (things[:, 0] + things[:, 2])
-    apart = _apart(things, half, now, gap_m)
+    apart = least_apart(things, half, now, gap_m)
     counts, places = np.full(len(slopes), -1), np.empty((len(slopes), count))
     low, high = np.empty(count), np.empty(count)
     for line in range(len(slopes)):
-        _across(things, half, eye, slopes[line], depths[line], tops[line], low, high)
+        top = tops[line] - (1.0 - sight) * (tops[line] + eye[2] / depths[line])
+        _across(things, half, eye, slopes[line], depths[line], top, clear_m, low, high)
         counts[line] = _part(now, half, apart, may_move, width_m, low, high, places[line])
     return counts, places
 
@@ -62,14 +63,14 @@ def _across(
     slope: float,
     depth: float,
     top: float,
+    clear_m: float,
     low: Floats,
     high: Floats,
 ) -> None:
     """Write between which places of its middle each thing hides a target in one line of sight."""
-    sight = top - (1.0 - SIGHT) * (top + eye[2] / depth)
     for index in range(len(things)):
-        begin, end = _hidden_between(things[index], half[index], slope, sight, depth, eye)
-        low[index], high[index] = begin - CLEAR_M, end + CLEAR_M
+        begin, end = _hidden_between(things[index], half[index], slope, top, depth, eye)
+        low[index], high[index] = begin - clear_m, end + clear_m
 
 
 @kernel
@@ -150,18 +151,22 @@ def _settled(
 def any_shows(
     boxes: Floats,
     target: int,
+    stays: Bools,
+    pairs: Ints,
     rays: Floats,
     depths: Floats,
     eye: Floats,
     width_m: float,
     gap_m: float,
 ) -> bool:
-    """Say whether a pixel of a target can show; see `proofs`.
+    """Say whether two pixels of a target can show at a time; see `proofs`.
 
     Args:
         boxes: Rows (x low, y low, x high, y high, height), shape (B, 5).
         target: Which of them it is.
-        rays: Through its pixels, shape (P, 3).
+        stays: Which of them stay where they are, the target among them, shape (B,).
+        pairs: Which two pixels, the same one twice for one alone, shape (Q, 2).
+        rays: Through the target's pixels, shape (P, 3).
         depths: How far along each it is, shape (P,).
         eye: Position of the camera, shape (3,).
         width_m: Width of the shelf.
@@ -170,17 +175,19 @@ def any_shows(
     count = len(boxes)
     half, middle = 0.5 * (boxes[:, 2] - boxes[:, 0]), 0.5 * (boxes[:, 0] + boxes[:, 2])
     low, high = np.minimum(half, middle), np.maximum(width_m - half, middle)
-    low[target] = high[target] = middle[target]
-    apart = _apart(boxes, half, middle, gap_m)
-    begin, end = np.empty(count), np.empty(count)
-    for pixel in range(len(rays)):
-        ray, depth = rays[pixel], depths[pixel] * rays[pixel, 1]
-        for index in range(count):
-            begin[index], end[index] = np.inf, -np.inf
-            if index != target:
-                begin[index], end[index] = _hidden_between(
-                    boxes[index], half[index], ray[0] / ray[1], ray[2] / ray[1], depth, eye
-                )
+    low[stays], high[stays] = middle[stays], middle[stays]
+    apart = least_apart(boxes, half, middle, gap_m)
+    begin, end = np.empty((2, count)), np.empty((2, count))
+    for pair in range(len(pairs)):
+        for side in range(2):
+            pixel = pairs[pair, side]
+            ray, depth = rays[pixel], depths[pixel] * rays[pixel, 1]
+            for index in range(count):
+                begin[side, index], end[side, index] = np.inf, -np.inf
+                if index != target:
+                    begin[side, index], end[side, index] = _hidden_between(
+                        boxes[index], half[index], ray[0] / ray[1], ray[2] / ray[1], depth, eye
+                    )
         if _leftmost(apart, low, high, begin, end):
             return True
     return False
@@ -188,7 +195,7 @@ def any_shows(
 
 @kernel
 def _leftmost(apart: Floats, low: Floats, high: Floats, begin: Floats, end: Floats) -> bool:
-    """Say whether all find a place that is out of their interval, each as far left as it can."""
+    """Say whether all find a place that is out of their intervals, each as far left as it can."""
     x, changed = low.copy(), True
     while changed:
         changed = False
@@ -196,8 +203,9 @@ def _leftmost(apart: Floats, low: Floats, high: Floats, begin: Floats, end: Floa
             least = x[index]
             for other in range(len(x)):
                 least = max(least, x[other] + apart[other, index])
-            if begin[index] + TOUCH_M < least < end[index] - TOUCH_M:
-                least = end[index]
+            for side in (0, 1, 0):
+                if begin[side, index] + TOUCH_M < least < end[side, index] - TOUCH_M:
+                    least = end[side, index]
             if least > high[index] + TOUCH_M:
                 return False
             if least > x[index] + TOUCH_M:
@@ -206,7 +214,7 @@ def _leftmost(apart: Floats, low: Floats, high: Floats, begin: Floats, end: Floa
 
 
 @kernel
-def _apart(things: Floats, half: Floats, now: Floats, gap_m: float) -> Floats:
+def least_apart(things: Floats, half: Floats, now: Floats, gap_m: float) -> Floats:
     """Return how far right of another the middle of each thing stays, shape (T, T)."""
     count = len(things)
     apart = np.full((count, count), -np.inf)

@@ -8,11 +8,30 @@ from perception.camera import CameraModel
 from perception.shelf.planning.kernels import Ints, survey
 from perception.shelf.types import Floats, Size
 
-# Columns across the image; finer ones cost time and change no decision.
-COLUMNS = 96
-# A pose counts as seen when it rises above what is before it by this share of its own face. More
-# than the thesis's 1 %: poses stand for their neighbours, and places are known to some millimetres.
-SHOWN = 0.04
+
+@dataclass(frozen=True, slots=True)
+class Grain:
+    """How finely it is judged what shows.
+
+    Attributes:
+        columns: Columns across the image; 0 for one in the middle of each pixel.
+        shown: A pose counts as seen when it rises above what is before it by this share of its own
+            face. More than the thesis's 1 %: poses stand for their neighbours, and places are known
+            to some millimetres.
+        clear_m: What is pushed aside leaves so much on its side of a line of sight.
+        sight: Such a line ends at this share of the target's height.
+    """
+
+    columns: int = 96
+    shown: float = 0.04
+    clear_m: float = 0.008
+    sight: float = 0.8
+
+
+# Finer columns cost time and change no decision where there is room.
+COARSE = Grain()
+# Where there is little room, a slit of a pixel is worth a try.
+FINE = Grain(columns=0, shown=0.012, clear_m=0.0025, sight=0.88)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -38,19 +57,23 @@ class Outlook:
     shows: Floats
 
 
-def outlook(camera: CameraModel, places_m: Floats, target_m: Size, shown: float = SHOWN) -> Outlook:
+def outlook(
+    camera: CameraModel, places_m: Floats, target_m: Size, grain: Grain = COARSE
+) -> Outlook:
     """Return where a target would show.
 
     Args:
         camera: What looks into the shelf, about level, along y.
         places_m: Where the target's centre may be, shape (K, 2).
         target_m: Its size.
-        shown: Share of its face that has to be seen.
+        grain: How finely it is judged.
     """
     eye = camera.T_world_camera[:3, 3].copy()
     right, along = camera.T_world_camera[:3, 0], camera.T_world_camera[:3, 2]
-    edges = np.linspace(-0.5, camera.width_px - 0.5, COLUMNS) - camera.centre_px[0]
-    across = edges / camera.focal_px
+    pixels = np.arange(camera.width_px, dtype=np.float64)
+    if grain.columns:
+        pixels = np.linspace(-0.5, camera.width_px - 0.5, grain.columns)
+    across = (pixels - camera.centre_px[0]) / camera.focal_px
     slopes = (along[0] + across * right[0]) / (along[1] + across * right[1])
     half = 0.5 * np.array(target_m[:2])
     heights = np.full((len(places_m), 1), target_m[2])
@@ -59,7 +82,7 @@ def outlook(camera: CameraModel, places_m: Floats, target_m: Size, shown: float 
     depth, top = near[cell, column], rise[cell, column]
     faces = np.bincount(cell, weights=top + eye[2] / depth, minlength=len(places_m))
     start = np.searchsorted(cell, np.arange(len(places_m) + 1))
-    return Outlook(eye, slopes, column, depth, top, start, np.maximum(shown * faces, 1e-6))
+    return Outlook(eye, slopes, column, depth, top, start, np.maximum(grain.shown * faces, 1e-6))
 
 
 def restricted(whole: Outlook, poses: Ints) -> Outlook:

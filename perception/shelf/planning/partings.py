@@ -11,9 +11,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from perception.shelf.planning.kernels import Ints, blade_fits, room_beside
-from perception.shelf.planning.order_kernels import part_columns
-from perception.shelf.planning.outlook import Outlook
+from perception.shelf.planning.kernels import GAP, Ints, blade_fits
+from perception.shelf.planning.order_kernels import least_apart, part_columns
+from perception.shelf.planning.outlook import COARSE, Grain, Outlook
 from perception.shelf.types import Bools, Floats
 
 # Objects that are so close to where they are to be are there.
@@ -42,6 +42,7 @@ def partings(
     view: Outlook,
     places_m: Floats,
     poses: Ints,
+    grain: Grain = COARSE,
 ) -> Iterator[Parting]:
     """Yield ways to see a target that stands in one of some poses, different ones.
 
@@ -54,6 +55,7 @@ def partings(
         view: Where each pose shows.
         places_m: Where the target's middle is in each pose, shape (K, 2).
         poses: Which poses to see, by number.
+        grain: How finely it is judged what shows.
     """
     walls = np.hstack([met, np.zeros((len(met), 1))])
     things = np.vstack([boxes, walls, np.zeros((1, 5))])
@@ -68,7 +70,7 @@ def partings(
         things[-1, :4] = np.hstack([places_m[pose] - half, places_m[pose] + half])
         counts, places = part_columns(
             things, may_move, shelf_m[0], shelf_m[1], view.eye, view.slopes[view.column[entries]],
-            view.depth[entries], view.top[entries],
+            view.depth[entries], view.top[entries], grain.clear_m, grain.sight,
         )  # fmt: skip
         for entry in np.flatnonzero(counts > 0):
             x_m = places[entry, : len(boxes)]
@@ -95,26 +97,25 @@ def pushes_of(
         The pushes; none where the blade does not come in beside one of them, or none can begin.
     """
     now = boxes.copy()
-    shifts_m = parting.x_m - 0.5 * (now[:, 0] + now[:, 2])
-    left = np.flatnonzero(np.abs(shifts_m) > CLOSE_M).tolist()
+    things = np.vstack([boxes, np.hstack([met, np.zeros((len(met), 1))])])
+    half_m, middle_m = 0.5 * (things[:, 2] - things[:, 0]), 0.5 * (things[:, 0] + things[:, 2])
+    one_way = least_apart(things, half_m, middle_m, reach[GAP])
+    apart = np.maximum(one_way, one_way.T)
+    goal_m, ahead = parting.x_m, middle_m[None] > middle_m[: len(boxes), None]
+    left = np.flatnonzero(np.abs(goal_m - middle_m[: len(boxes)]) > CLOSE_M).tolist()
     pushes: list[tuple[int, Floats]] = []
     while left:
-        able = (one for one in left if pushes or seen[one])
+        room_m = np.where(ahead[left], middle_m - goal_m[left, None], goal_m[left, None] - middle_m)
+        goes = (room_m >= apart[left] - CLOSE_M).all(axis=1)
+        able = [one for one, free in zip(left, goes, strict=True) if free and (pushes or seen[one])]
+        signs = np.sign(goal_m - middle_m[: len(boxes)]).astype(int)
         index = next(
-            (one for one in able if _goes(now, one, shifts_m[one], met, width_m, reach)), None
+            (one for one in able if blade_fits(now, one, signs[one], met, width_m, reach)), None
         )
         if index is None:
             return []
-        now[index, [0, 2]] += shifts_m[index]
+        now[index, [0, 2]] += goal_m[index] - middle_m[index]
+        middle_m[index] = goal_m[index]
         pushes.append((index, now[index, :2].copy()))
         left.remove(index)
     return pushes
-
-
-def _goes(
-    boxes: Floats, index: int, shift_m: float, met: Floats, width_m: float, reach: Floats
-) -> bool:
-    sign = 1 if shift_m > 0.0 else -1
-    if not blade_fits(boxes, index, sign, met, width_m, reach):
-        return False
-    return bool(room_beside(boxes, index, sign, met, width_m, reach) >= abs(shift_m) - CLOSE_M)

@@ -86,12 +86,12 @@ def front_lane(moved: Floats) -> Floats:
 def push_room_m(moved: Floats, others: Floats, sign: int, shelf: Shelf, reach: Reach) -> float:
     """Return how far an object can be pushed until it would touch another one or the wall."""
     beside = (np.minimum(moved[3], others[:, 3]) - np.maximum(moved[1], others[:, 1])) > TOUCH_M
+    # Places are known to some millimetres: what seems to overlap stands there all the same.
+    beside &= sign * (others[:, [0, 2]].sum(axis=1) - moved[[0, 2]].sum()) >= 0.0
     if sign > 0:
-        ahead = others[beside & (others[:, 0] >= moved[2] - TOUCH_M), 0] - moved[2]
-        wall_m = shelf.width_m - moved[2]
+        ahead, wall_m = others[beside, 0] - moved[2], shelf.width_m - moved[2]
     else:
-        ahead = moved[0] - others[beside & (others[:, 2] <= moved[0] + TOUCH_M), 2]
-        wall_m = moved[0]
+        ahead, wall_m = moved[0] - others[beside, 2], moved[0]
     return float(max(0.0, min([wall_m, *(ahead - reach.gap_m)])))
 
 

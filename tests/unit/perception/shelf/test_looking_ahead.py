@@ -15,7 +15,7 @@ from perception.shelf.planning.looking_ahead import (
     look_ahead,
 )
 from perception.shelf.planning.moves import Place, Push
-from perception.shelf.planning.outlook import outlook
+from perception.shelf.planning.outlook import Grain, outlook
 from perception.shelf.planning.room import Reach, blade_fits, footprints, push_room_m, way_out
 from perception.shelf.planning.ways_out import freeing_move
 from perception.shelf.rendering import ShelfRenderer
@@ -99,7 +99,7 @@ def test_what_shows_by_columns_is_what_shows_in_the_image(seed):
         gone = [box for number, box in enumerate(boxes) if number != index]
         share = renderer.visible_shares([*gone, target])[-1]
         made = situation(gone, target)
-        view = outlook(CAMERA, made.places_m, target.size_m, shown=0.05)
+        view = outlook(CAMERA, made.places_m, target.size_m, Grain(shown=0.05))
         inputs = kernel_inputs(made)
         seen, _, _ = assess(
             inputs.boxes, made.movable, inputs.met, SHELF.width_m, inputs.reach, view.slopes,

@@ -1,0 +1,60 @@
+"""What to do next: from plans that may find the target to those that just make room."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from perception.shelf.planning.contacts import contact_beside
+from perception.shelf.planning.exploring import unseen_things
+from perception.shelf.planning.looking_ahead import LEAST_FOUND, Depth, Situation, look_ahead
+from perception.shelf.planning.moves import Plan
+from perception.shelf.planning.outlook import FINE
+from perception.shelf.planning.proofs import hopeless
+from perception.shelf.types import Bools
+
+# What was met this close to where it would touch an object now still stops that object.
+TOUCHING_M = 0.004
+
+
+def best_plan(situation: Situation, depth: Depth | None = None) -> Plan | None:
+    """Return what to do; None when nothing can be moved, or it is proved that nothing helps.
+
+    Plans that may find the target come first. Where there is none, slits are worth a try, then
+    what shows something that has not been seen; then whatever makes room.
+
+    Args:
+        situation: What is known.
+        depth: How far to look; None for the defaults.
+    """
+    rough = look_ahead(situation, depth)
+    if rough is not None and rough.finds > LEAST_FOUND:
+        return rough
+    for plan in _other_plans(situation, depth):
+        if plan is not None and plan.finds > LEAST_FOUND:
+            return plan
+    if not situation.reach.suction and hopeless(situation):
+        return None
+    return rough or look_ahead(forgetful(situation), depth)
+
+
+def _other_plans(situation: Situation, depth: Depth | None) -> Iterator[Plan | None]:
+    yield look_ahead(situation, depth, FINE)
+    unseen = unseen_things(situation)
+    if unseen is not None:
+        plan = look_ahead(unseen, depth)
+        yield None if plan is None else replace(plan, shows=0.0)
+    # Where all has been tried, it is tried again: the shelf has changed meanwhile.
+    yield look_ahead(forgetful(situation), depth)
+
+
+def forgetful(situation: Situation) -> Situation:
+    """Return a situation without what was tried, but for what is still blocked as it was."""
+    return replace(situation, been=(), met=situation.met[_touching(situation)])
+
+
+def _touching(situation: Situation) -> Bools:
+    beside = [contact_beside(box, sign) for box in situation.boxes for sign in (-1, 1)]
+    sides = np.array(beside).reshape(-1, 4)
+    apart = np.abs(situation.met[:, None] - sides[None]).max(axis=2)
+    return np.asarray((apart < TOUCHING_M).any(axis=1))
