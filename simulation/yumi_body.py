@@ -108,16 +108,15 @@ class YumiBody:
 
     def link_poses(self, names: Sequence[str]) -> tuple[Floats, Floats]:
         """Return positions [m], shape (N, 3), and quaternions xyzw, shape (N, 4), of links."""
-        moving = [name for name in names if name != _ROOT]
+        moving = [self._links[name] for name in names if name != _ROOT]
         states = self._bullet.getLinkStates(
-            self._robot,
-            [self._links[name] for name in moving],
-            computeForwardKinematics=True,
-            physicsClientId=self._server,
+            self._robot, moving, computeForwardKinematics=True, physicsClientId=self._server
         )
-        poses = {name: (*state[4], *state[5]) for name, state in zip(moving, states, strict=True)}
-        poses[_ROOT] = (*self._placement.position_m, *self._root_quat_xyzw())
-        table = np.array([poses[name] for name in names])
+        poses = [state[4] + state[5] for state in states]
+        if _ROOT in names:
+            root = (*self._placement.position_m, *self._root_quat_xyzw())
+            poses.insert(names.index(_ROOT), root)
+        table = np.array(poses)
         return table[:, :3], table[:, 3:]
 
     def close(self) -> None:

@@ -133,8 +133,8 @@ class Rod:
             ends_m: Second ends [m], shape (M, 3).
             radii_m: Radii [m], shape (M,).
         """
-        axes = np.hstack([np.reshape(starts_m, (-1, 3)), np.reshape(ends_m, (-1, 3))])
-        axes = np.ascontiguousarray(axes, dtype=np.float64)
+        axes = np.empty((len(starts_m), 6))
+        axes[:, :3], axes[:, 3:] = starts_m, ends_m
         radii = np.array(radii_m, dtype=np.float64).reshape(-1)
         same = len(radii) == len(self._capsules.radii)
         start = self._capsules.end if same else axes
