@@ -71,6 +71,20 @@ class CrossingClassifier(Protocol):
 
 
 @runtime_checkable
+class TraceDoubter(Protocol):
+    """A classifier that sees where traces go over from one strand to another."""
+
+    def doubted(self, image: GreyImage, traces: Sequence[Trace]) -> tuple[Trace, ...]:
+        """Return ways to trace one cable, likeliest first, each believed less by what is seen.
+
+        Args:
+            image: Grey image.
+            traces: The ways; their beliefs add up to 1 at most.
+        """
+        ...
+
+
+@runtime_checkable
 class CableVision(Protocol):
     """The whole of cable perception as the skills of a tree use it, step by step."""
 

@@ -13,7 +13,7 @@ from perception.cable.coverage import explained_share
 from perception.cable.crowding import doubt_shared
 from perception.cable.eyes import LEAST_END, EndJudge
 from perception.cable.grasp_points import GraspConfig
-from perception.cable.interfaces import HypothesisTracer
+from perception.cable.interfaces import HypothesisTracer, TraceDoubter
 from perception.cable.knots import find_knots
 from perception.cable.parts import (
     CLASSIFIERS,
@@ -117,7 +117,7 @@ class GreyImageVision:
         self, image: GreyImage, start_px: Points, endpoints: Sequence[Endpoint]
     ) -> Trace | None:
         """Follow one cable; see `Tracer.trace`."""
-        return self._tracer.trace(self._seen(image), start_px, endpoints)
+        return next(iter(self._ways(image, start_px, endpoints)), None)
 
     def explained_share(self, image: GreyImage, trace: Trace) -> float:
         """Return the share of cable pixels in view that a trace accounts for, in [0, 1]."""
@@ -189,11 +189,19 @@ class GreyImageVision:
     def _ways(
         self, image: GreyImage, start_px: Points, endpoints: Sequence[Endpoint]
     ) -> tuple[Trace, ...]:
-        """Return the ways to trace the cable at a start, the likeliest first."""
+        """Return the ways to trace the cable at a start, the likeliest first.
+
+        Whoever looks at their crossings may see that some of them change strands.
+        """
+        seen = self._seen(image)
         if isinstance(self._tracer, HypothesisTracer):
-            return self._tracer.hypotheses(self._seen(image), start_px, endpoints)
-        trace = self.trace(image, start_px, endpoints)
-        return (trace,) if trace is not None else ()
+            ways = self._tracer.hypotheses(seen, start_px, endpoints)
+        else:
+            trace = self._tracer.trace(seen, start_px, endpoints)
+            ways = (trace,) if trace is not None else ()
+        if isinstance(self._classifier, TraceDoubter):
+            return self._classifier.doubted(seen, ways)
+        return ways
 
     def _readings(
         self,

@@ -15,10 +15,12 @@ from perception.cable.classifiers.thesis import (  # noqa: E402
     confidence,
     corrected,
 )
+from perception.cable.parts import CROSSING  # noqa: E402
 from perception.cable.types import Trace, TraceEnd  # noqa: E402
 from perception.models.crossing_ribbon_net import CrossingRibbonNet  # noqa: E402
+from perception.models.store import FOLDER  # noqa: E402
 from perception.models.thesis_crossing_net import ThesisCrossingNet  # noqa: E402
-from perception.training.scenes import SceneConfig, make_scene  # noqa: E402
+from perception.training.scenes import SceneConfig, lay_scene, make_scene  # noqa: E402
 
 SCORES = np.linspace(0.0, 1.0, 12)
 CONFIG = SceneConfig(
@@ -123,3 +125,34 @@ def test_a_path_goes_straight_on_beyond_its_line():
     assert path[0] == pytest.approx([-6.0 * 0.6, -6.0 * 0.8]) or path[0, 0] < 0.0
     assert path[-1, 1] > 4.0
     assert steps == pytest.approx(np.ones(16), abs=0.3)
+
+
+def _hairpin(swapped):
+    """Return a cable that turns round and comes back beside itself [cable widths].
+
+    Args:
+        swapped: Whether its two sides change places half way, as where a trace goes over from
+            one to the other.
+    """
+    x = np.arange(8.0, 34.0, 0.5)
+    turn = np.linspace(-np.pi / 2.0, np.pi / 2.0, 9)[1:-1]
+    aside = 0.6 * (-np.tanh((x - 20.0) / 1.5) if swapped else np.ones(len(x)))
+    bend = np.column_stack([34.0 + 1.5 * np.cos(turn), 22.0 + 0.6 * np.sin(turn)])
+    there = np.column_stack([x, 22.0 - aside])
+    back = np.column_stack([x, 22.0 + aside])[::-1]
+    return np.vstack([there, bend[::-1] if swapped else bend, back])
+
+
+def test_traces_that_go_over_to_the_strand_beside_are_doubted():
+    classifier = LearnedClassifier(FOLDER / CROSSING)
+    config = SceneConfig(extent=44.0, narrowest_px=8.0, widest_px=9.0, bright=True, style="shaded")
+    for seed in range(4):
+        scene = lay_scene(np.random.default_rng(seed), [_hairpin(swapped=False)], config)
+        right, wrong = (
+            Trace(scene.width_px * _hairpin(swapped), TraceEnd.ENDPOINT, belief)
+            for swapped, belief in ((False, 0.3), (True, 0.6))
+        )
+        first, second = classifier.doubted(scene.image, (wrong, right))
+        assert np.array_equal(first.points_px, right.points_px)
+        assert first.probability == pytest.approx(0.3)
+        assert second.probability < 0.2
