@@ -24,6 +24,17 @@ def test_certain_beliefs_that_never_hold_are_as_wrong_as_can_be():
     assert rows["knotted_error_of_surest_80"].value == 1.0
 
 
+def test_few_scenes_show_a_gap_even_where_beliefs_hold():
+    few, many = (
+        _rows([Trial(0.3, k % 10 < 3, None) for k in range(count)])[
+            "knotted_calibration_error_by_chance"
+        ].value
+        for count in (60, 3000)
+    )
+    assert 0.1 < few < 0.3
+    assert many < 0.04
+
+
 def test_who_abstains_where_unsure_makes_no_errors():
     sure = [Trial(0.99, True, None)] * 40 + [Trial(0.01, False, None)] * 40
     unsure = [Trial(0.55, False, None)] * 20
