@@ -60,7 +60,7 @@ def _filter(
     first = run.names.tick(limits[0])
     last = len(run.index) - 1 if limits[1] is None else run.names.tick(limits[1])
     if first > last:
-        raise InputError(f"--from {limits[0]}: comes after --to {limits[1]}")
+        raise InputError(f"--from {limits[0]}: comes after --to {limits[1]}; expected it before")
     # Who asks for keys alone wants no nodes, and the other way round.
     nodes = frozenset(range(len(run.index.nodes))) if key is None else frozenset()
     if node is not None:

@@ -22,7 +22,8 @@ def yaml_files(paths: Sequence[Path]) -> list[Path]:
         there = path if path.exists() else _by_name(path)
         found |= dict.fromkeys(sorted(there.rglob("*.yaml")) if there.is_dir() else [there])
     if not found:
-        raise InputError(f"no YAML files in {', '.join(map(str, paths))}")
+        where = ", ".join(map(str, paths))
+        raise InputError(f"no YAML files in {where}; expected some that end with .yaml")
     return [*found]
 
 

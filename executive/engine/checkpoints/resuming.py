@@ -67,7 +67,10 @@ def recorded_mission(
         InputError: It is not the one that was recorded, or its files are not there.
     """
     if not header.sources:
-        raise InputError(f"{header.mission}: the recording does not name the mission's file")
+        raise InputError(
+            f"{header.mission}: the recording names no file of the mission, so nothing can go on "
+            "with it; try cellwright run"
+        )
     notes = tuple(changed_versions(header.versions, versions()))
     try:
         mission = load_mission(header.sources[0].file, skills=skills, types=types)

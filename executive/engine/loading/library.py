@@ -155,7 +155,8 @@ class Library:
         """
         entry = self._entry(file)
         if entry.document is not None and not isinstance(entry.document, StubsDocument):
-            raise InputError(f"{entry.document.name!r} holds no stubs")
+            kind = kind_of_document(entry.document)
+            raise InputError(f"{entry.document.name!r} is a {kind}; expected stubs")
         return entry.stubs
 
     def _entry(self, file: Path) -> Entry:

@@ -90,6 +90,8 @@ def test_trees_are_meant_where_no_file_is_named(cellwright, tmp_path, monkeypatc
         "trees: no such file or folder; try the name of a YAML file, or of a mission"
     )
     (tmp_path / "trees").mkdir()
-    assert str(cellwright(command).exception) == "no YAML files in trees"
+    assert str(cellwright(command).exception) == (
+        "no YAML files in trees; expected some that end with .yaml"
+    )
     (tmp_path / "trees" / "t.yaml").write_text("format: 1\ntree: t\nroot: {set: {a: 1, b: a}}\n")
     assert "t.yaml" in cellwright(command).stdout or command != "check"
