@@ -20,6 +20,12 @@ AHEAD = 2
 """Runs that are with Dask for each of its threads: one runs, one waits."""
 
 _LOOK_S = 5.0
+# What Dask would note of itself: samples of its threads and of the machine, each second anew.
+_NO_NOTES = {
+    "distributed.worker.profile.enabled": False,
+    "distributed.admin.system-monitor.log-length": 60,
+    "distributed.admin.low-level-log-length": 100,
+}
 _LOOPBACK = "127.0.0.1"
 
 
@@ -52,6 +58,7 @@ class Cluster:
     @contextmanager
     def _connected(self, workers: int, scheduler: str | None) -> Iterator["Client"]:
         try:
+            from dask import config
             from distributed import Client, LocalCluster
         except ImportError:
             raise InputError(
@@ -70,6 +77,7 @@ class Cluster:
             return
         # Threads of this process: the missions have processes of their own.
         with (
+            config.set(_NO_NOTES),
             LocalCluster(
                 n_workers=1,
                 threads_per_worker=workers,
