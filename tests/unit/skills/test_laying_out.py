@@ -10,7 +10,14 @@ from executive.core.work import InlineWorker
 from perception.cable.polyline import arc_lengths
 from skills.cable.dilate_knot import DilateKnot
 from skills.cable.knot_sites import REACH_X_M, REACH_Y_M, deeper_pairs
-from skills.cable.laying_out import Pull, best_places, followed, places, tangle_cost
+from skills.cable.laying_out import (
+    Pull,
+    best_places,
+    crossings_of,
+    followed,
+    places,
+    tangle_cost,
+)
 
 LINE = np.column_stack([np.linspace(-0.4, 0.4, 81), 0.1 * np.sin(np.linspace(0.0, 9.0, 81))])
 LENGTH_M = float(arc_lengths(LINE)[-1])
@@ -76,6 +83,34 @@ def test_the_best_places_are_better_than_any_others():
     assert costs == sorted(costs)
     assert costs[0] == min(pull.cost(ends) for ends in places(True))
     assert best_places(Pull(LINE, 0.6, 0.4), True, 3) == []
+
+
+@pytest.mark.parametrize("cage_m", [0.15, 0.3, 0.45])
+def test_no_place_is_chosen_where_more_crossings_should_be_left(cage_m):
+    turn = np.linspace(0.0, 3.5 * np.pi, 120)
+    coil = (0.06 + 0.01 * turn)[:, None] * np.column_stack([np.cos(turn), np.sin(turn)])
+    pull = Pull(coil, cage_m, cage_m + 0.3)
+    for ends in best_places(pull, True, 8):
+        assert crossings_of(pull.predicted(ends)) <= crossings_of(coil)
+
+
+def test_a_pull_that_could_only_tangle_more_is_refused(monkeypatch):
+    arms = ArrivingArms()
+    trace, crossings, knot = overhand()
+    pairs = deeper_pairs(trace, crossings, knot, frame())
+    monkeypatch.setattr("skills.cable.dilate_knot.best_places", lambda *_: [])
+    monkeypatch.setattr("skills.cable.dilate_knot.searched_pairs", lambda *_: pairs)
+    inputs = {"frame": frame(), "trace": trace, "crossings": crossings, "knots": (knot,)}
+    outcome, _ = finished(DilateKnot(arms, InlineWorker()), inputs | {"planned": True})
+    assert (outcome.reason.code, arms.log) == ("pull.refused", [])
+
+
+def test_a_pull_says_how_many_crossings_it_should_leave():
+    trace, crossings, knot = overhand()
+    inputs = {"frame": frame(), "trace": trace, "crossings": crossings, "knots": (knot,)}
+    outcome, _ = finished(DilateKnot(ArrivingArms(), InlineWorker()), inputs | {"planned": True})
+    on_table = frame().camera.on_plane(trace.points_px)[:, :2]
+    assert 0 <= outcome.outputs["predicted"] <= crossings_of(on_table)
 
 
 def test_a_planned_dilation_ends_where_the_cable_should_lie_best():
