@@ -1,5 +1,7 @@
 """From a grey image to a scene: accuracy floors, and what must not depend on the view."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from synthetic_cable import Drawing, evenly, figure_8, laid_down, overhand, render, wander
@@ -11,10 +13,11 @@ from perception.cable.draw import draw_scene
 from perception.cable.interfaces import CableVision, CrossingClassifier, Tracer
 from perception.cable.mask import find_mask
 from perception.cable.observation import observe
+from perception.cable.parts import CLASSIFIERS, TRACERS
 from perception.cable.topology import curve_crossings
 from perception.cable.tracers.analytic import AnalyticTracer
 from perception.cable.tracers.skeleton import SkeletonTracer
-from perception.cable.types import Trace, TraceEnd
+from perception.cable.types import Trace, TraceEnd, TraceStart
 from perception.cable.vision import GreyImageVision, VisionConfig
 
 WANDER_SEEDS = (1, 4, 5, 6, 8, 9)
@@ -273,6 +276,43 @@ def test_a_given_start_is_where_the_trace_begins(knotted):
     (trace,) = scene.traces
     assert np.linalg.norm(trace.points_px[0] - start[0]) < 4.0
     assert (trace.points_px[5] - trace.points_px[0]) @ (start[-1] - start[0]) > 0.0
+
+
+class _Undecided(SkeletonTracer):
+    """Knows of two ways: where the cable goes, and straight on."""
+
+    def hypotheses(self, image, start_px, endpoints):
+        right = self.trace(image, start_px, endpoints)
+        line = np.linspace(start_px[0], start_px[0] + 200.0, 20)
+        straight = Trace(line, TraceEnd.LOST, 0.6)
+        return straight, replace(right, probability=0.4)
+
+
+class _Doubter(EdgeClassifier):
+    """Doubts what is lost."""
+
+    def doubted(self, image, traces):
+        told = [
+            replace(t, probability=0.1 * t.probability) if t.end is TraceEnd.LOST else t
+            for t in traces
+        ]
+        return tuple(sorted(told, key=lambda trace: -trace.probability))
+
+
+def test_the_way_is_taken_that_crossings_leave_most_belief_in(knotted, monkeypatch):
+    _, image = knotted
+    monkeypatch.setitem(TRACERS, "analytic", lambda eye: _Undecided(observe=eye.observe))
+    monkeypatch.setitem(CLASSIFIERS, "continuity", lambda _: _Doubter())
+    chosen = {}
+    for classifier in ("edges", "continuity"):
+        vision = GreyImageVision(VisionConfig(tracer="analytic", classifier=classifier))
+        end = vision.endpoints(image)[0]
+        start_px = TraceStart.at(end).points_px
+        trace = vision.trace(image, start_px, vision.endpoints(image))
+        assert vision.scene(image, start_px).traces[0].end is trace.end
+        chosen[classifier] = trace.end, trace.probability
+    assert chosen["edges"] == (TraceEnd.LOST, 0.6)
+    assert chosen["continuity"] == (TraceEnd.ENDPOINT, 0.4)
 
 
 def test_drawing_shows_the_scene_and_leaves_the_image_alone(knotted):
