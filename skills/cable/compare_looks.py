@@ -5,9 +5,9 @@ from typing import Annotated
 from executive.core.outcome import failure, success
 from executive.core.skill import In, Port, Skill, SkillRun
 from executive.core.work import Worker
-from perception.cable.crossings import strand_of
-from perception.cable.planning import Agreement, agreement, agrees, open_diagram
 from perception.cable.types import Crossing, Trace
+
+_Look = tuple[Trace, tuple[Crossing, ...]]
 
 
 class CompareLooks(Skill):
@@ -38,12 +38,21 @@ class CompareLooks(Skill):
         other_knotted: Annotated[float, In("belief in a knot by that look alone")],
     ) -> SkillRun:
         """Compare."""
-        one, other = (
-            open_diagram(strand_of(path, 0, own))
-            for path, own in ((trace, crossings), (other_trace, other_crossings))
-        )
-        if not (yield from self._worker.run(agrees, one, other)):
-            level: Agreement = yield from self._worker.run(agreement, one, other)
-            text = f"one look shows {len(one)} crossings, another {len(other)}: {level.value}"
-            return failure("looks.disagree", text)
+        other = (other_trace, other_crossings)
+        difference = yield from self._worker.run(_difference, (trace, crossings), other)
+        if difference is not None:
+            return failure("looks.disagree", difference)
         return success(knotted_probability=max(knotted, other_knotted))
+
+
+def _difference(one: _Look, other: _Look) -> str | None:
+    """Say how the diagrams of two looks differ; None where they do not, or by nothing."""
+    # Slow to load, and a tree is checked without it.
+    from perception.cable.crossings import strand_of
+    from perception.cable.planning import agreement, agrees, open_diagram
+
+    first, second = (open_diagram(strand_of(path, 0, own)) for path, own in (one, other))
+    if agrees(first, second):
+        return None
+    alike = agreement(first, second).value
+    return f"one look shows {len(first)} crossings, another {len(second)}: {alike}"
