@@ -1,5 +1,7 @@
 """Before a claim: two looks at one cable must show the same, and a mission says how it ended."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from cell_fakes import finished, frame
@@ -25,7 +27,7 @@ def looked(over):
         a, b = (float(np.interp(visit, rows, arcs) / arcs[-1]) for visit in visits)
         up, down = (a, b) if first_over else (b, a)
         found.append(Crossing(path[int(visits[0])], 0, up, 0, down, 0.99))
-    return Trace(path, TraceEnd.ENDPOINT, 0.9), tuple(found)
+    return Trace(path, TraceEnd.ENDPOINT, 1.0), tuple(found)
 
 
 def compared(one, other, beliefs=(0.02, 0.03)):
@@ -42,6 +44,17 @@ def test_looks_from_both_ends_agree_and_the_less_sure_one_counts(beliefs):
     assert compared(one, other, beliefs).outputs == {"knotted_probability": max(beliefs)}
 
 
+def test_doubt_of_the_path_alone_does_not_count_where_both_came_to_the_same():
+    trace, crossings = looked((True, True, False))
+    fair = (replace(trace, probability=0.8), crossings)
+    agreed = compared((trace, crossings), fair, (0.02, 0.5 * 0.2 + 0.01))
+    assert agreed.outputs["knotted_probability"] == pytest.approx(0.02)
+    doubtful = compared((trace, crossings), fair, (0.02, 0.5 * 0.2 + 0.06))
+    assert doubtful.outputs["knotted_probability"] == pytest.approx(0.06)
+    lost = (replace(trace, probability=0.5), crossings)
+    assert compared((trace, crossings), lost).reason.code == "looks.unsure"
+
+
 def test_looks_that_see_another_strand_on_top_disagree():
     outcome = compared(looked((True, False, True)), looked((True, False, False)))
     assert outcome.reason.code == "looks.disagree"
@@ -51,7 +64,7 @@ def test_a_twist_that_only_one_look_sees_does_not_matter():
     angle = np.linspace(0.0, 1.5 * np.pi, 120)
     circle = 100.0 * np.column_stack([np.sin(angle), 1.0 - np.cos(angle)])
     lead = np.column_stack([np.linspace(-300.0, 0.0, 100)[:-1], np.zeros(99)])
-    trace = Trace(np.vstack([lead, circle, [(-100.0, -200.0)]]), TraceEnd.ENDPOINT, 0.9)
+    trace = Trace(np.vstack([lead, circle, [(-100.0, -200.0)]]), TraceEnd.ENDPOINT, 1.0)
     crossing = Crossing(np.array([-100.0, 0.0]), 0, 0.2, 0, 0.8, 0.99)
     outcome = compared((trace, (crossing,)), (trace, ()))
     assert outcome.outputs["knotted_probability"] == 0.03
