@@ -33,11 +33,12 @@ def test_pictures_show_the_looks_and_the_cell(recording, tmp_path):
     sheet, video = tmp_path / "looks.png", tmp_path / "run.webm"
     write_sheet(recording, sheet)
     image = cv2.imread(str(sheet))
-    # One look, with a trace in colour.
+    # Two looks before a claim, each with a trace in colour.
     assert image.shape == (387, 4 * 516, 3) or image.shape == (386, 4 * 516, 3)
-    coloured = np.ptp(image[:, :516].astype(int), axis=2) > 60
-    assert coloured.sum() > 200
-    assert not image[:, 516:].any()
+    for look in (image[:, :516], image[:, 516:1032]):
+        coloured = np.ptp(look.astype(int), axis=2) > 60
+        assert coloured.sum() > 200
+    assert not image[:, 1032:].any()
     write_video(recording, video)
     film = cv2.VideoCapture(str(video))
     seen, frame = film.read()

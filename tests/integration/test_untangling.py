@@ -21,13 +21,13 @@ def run(folder, name, *options):
     return answer.returncode, json.loads(answer.stdout), recording
 
 
-def test_a_cable_without_a_knot_is_claimed_untangled_after_one_look(tmp_path):
+def test_a_cable_without_a_knot_is_claimed_untangled_after_two_looks(tmp_path):
     code, report, recording = run(tmp_path, "none", "--set", "cable.knot=none", "--seed", "3")
     assert (code, report["outcome"]) == (0, "success")
     assert report["claim"]["untangled"] is True
     assert report["truth"]["untangled"] is True
     assert {action["name"] for action in report["actions"]} == {"go_home"}
-    assert len(list(Recording.open(recording).images())) == 1
+    assert len(list(Recording.open(recording).images())) == 2
 
 
 def test_the_same_seed_gives_the_same_recording_status_for_status(tmp_path):
