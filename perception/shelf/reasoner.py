@@ -15,6 +15,7 @@ from perception.shelf.detections import Detections
 from perception.shelf.drawing import drawn_belief
 from perception.shelf.hidden_poses import HiddenPoses, PoseRules
 from perception.shelf.interfaces import object_of
+from perception.shelf.meeting import MISTAKEN, meeting, rescaled, unexplained
 from perception.shelf.organisation import organisation_of
 from perception.shelf.planning.choosing import best_plan
 from perception.shelf.planning.contacts import contact_of
@@ -22,7 +23,7 @@ from perception.shelf.planning.exploring import RULES, THING_M
 from perception.shelf.planning.free_floor import CELL_M, covered_cells, free_cells
 from perception.shelf.planning.looking_ahead import ANYHOW, FIXED, UNSEEN, Situation
 from perception.shelf.planning.moves import Move, Plan, moved_box
-from perception.shelf.planning.room import Reach, footprints, overlapping
+from perception.shelf.planning.room import Reach, footprints
 from perception.shelf.planning.tidying import tidying_move
 from perception.shelf.planning.ways_out import freeing_move
 from perception.shelf.refining import refined
@@ -33,14 +34,6 @@ from perception.shelf.types import Bools, Box, Floats, ShelfView, Sighting, Size
 
 # So many cameras' rays and silhouettes are kept: they cost more than everything else.
 KEPT = 16
-# How likely a look is to be mistaken that rules a place out. What is ruled out comes up again when
-# nothing else is left: places of what is seen are known to some millimetres alone.
-MISTAKEN = 1e-3
-# What a push has met unseen is the target, or something else: places that do not touch it are less
-# likely by this factor.
-NOT_MET, TOUCHING_M = 0.3, 0.005
-# What was met is explained by an object that ends well inside it, or by so much free floor.
-SIDE_M, EXPLAINED_SHARE = 0.001, 0.95
 # How well the place is known of a target that was seen from another side, and only partly.
 GLIMPSE_M = 0.02
 # What is the target with this probability is worth moves that show more of it.
@@ -129,7 +122,7 @@ class SearchReasoner:
             floor=self._floor(belief, view, caster, objects),
             looks=belief.looks + 1,
         )
-        seen = self._weighted(replace(seen, met=_unexplained(seen)), possible)
+        seen = self._weighted(replace(seen, met=unexplained(seen)), possible)
         heat = poses.heat(seen.weights)
         picture = drawn_belief(frame.colour, detections.segments, heat, seen.objects, belief.target)
         return replace(seen, picture=picture)
@@ -152,12 +145,12 @@ class SearchReasoner:
         """See `ShelfReasoning`."""
         before = object_of(belief, label)
         if before is None:
-            return _meeting(belief, met, felt=True)
+            return meeting(belief, met, felt=True)
         objects = tuple(_stood(one, box) if one.label == label else one for one in belief.objects)
         moved = replace(belief, objects=objects, been=(*belief.been, (label, before.box)))
         if before.box.y_m == box.y_m:
             moved = self._swept(moved, before.box, box)
-        return _meeting(moved, met, felt=True)
+        return meeting(moved, met, felt=True)
 
     def refused(self, belief: ShelfBelief, move: Move, failure: str) -> ShelfBelief:
         """See `ShelfReasoning`."""
@@ -169,7 +162,7 @@ class SearchReasoner:
         tried = (move.label, moved_box(move, thing.box))
         belief = replace(belief, been=(*belief.been, tried))
         met = contact_of(move, thing.box, failure)[None]
-        return _meeting(belief, met, felt=failure == BLOCKED)
+        return meeting(belief, met, felt=failure == BLOCKED)
 
     def removed(self, belief: ShelfBelief, label: str) -> ShelfBelief:
         """See `ShelfReasoning`."""
@@ -193,7 +186,7 @@ class SearchReasoner:
         taken = self._hidden(self._camera, belief.target).overlaps(swept)
         return replace(
             belief,
-            plausible=_rescaled(np.where(taken, MISTAKEN, 1.0) * belief.plausible),
+            plausible=rescaled(np.where(taken, MISTAKEN, 1.0) * belief.plausible),
             unseen=belief.unseen & ~self._things(self._camera).overlaps(swept),
         )
 
@@ -279,49 +272,6 @@ def _stood(one: SeenObject, box: Box) -> SeenObject:
     """Return an object where it stands after a move; what is sure of it has moved as far."""
     x_m, y_m = one.sure.x_m + box.x_m - one.box.x_m, one.sure.y_m + box.y_m - one.box.y_m
     return replace(one, box=box, sure=one.sure.at(x_m, y_m))
-
-
-def _meeting(belief: ShelfBelief, met: Floats, *, felt: bool) -> ShelfBelief:
-    """Add what was met, shape (M, 4); what is felt beside an object may be the target."""
-    half_m = 0.5 * np.array(belief.target_m[:2]) + TOUCHING_M
-    here = np.hstack([belief.places_m - half_m, belief.places_m + half_m])
-    likely = belief.plausible
-    for row in met if felt else ():
-        # What was met before at the same place tells nothing new.
-        if not overlapping(row, belief.met).any():
-            likely = likely * np.where(overlapping(row, here), 1.0, NOT_MET)
-    return replace(belief, met=np.vstack([belief.met, met]), plausible=_rescaled(likely))
-
-
-def _rescaled(plausible: Floats) -> Floats:
-    scaled: Floats = np.maximum(plausible / plausible.max(), MISTAKEN**2)
-    return scaled
-
-
-def _unexplained(belief: ShelfBelief) -> Floats:
-    """Return what was met and is neither an object that is known by now nor free, shape (M, 4)."""
-    known = footprints([one.box for one in belief.objects])
-    kept = [
-        not _begins_in(row, known) and _free_share(belief.floor, row) < EXPLAINED_SHARE
-        for row in belief.met
-    ]
-    return belief.met[np.array(kept, dtype=bool)]
-
-
-def _begins_in(met: Floats, known: Floats) -> bool:
-    """Say whether a side of an object lies in what was met; one that covers it stops nothing."""
-    axis = int(np.argmin(met[2:] - met[:2]))
-    sides = known[:, [axis, axis + 2]]
-    inside = ((sides > met[axis] + SIDE_M) & (sides < met[axis + 2] - SIDE_M)).any(axis=1)
-    return bool((inside & overlapping(met, known)).any())
-
-
-def _free_share(floor: Bools, met: Floats) -> float:
-    """Return the share of the cells in what was met that are known to be free."""
-    low = np.maximum(np.ceil(met[:2] / CELL_M - 0.5).astype(int), 0)
-    high = np.floor(met[2:] / CELL_M - 0.5).astype(int) + 1
-    cells = floor[low[0] : high[0], low[1] : high[1]]
-    return float(cells.mean()) if cells.size else 0.0
 
 
 def _glimpsed(belief: ShelfBelief) -> Floats:

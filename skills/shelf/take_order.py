@@ -3,6 +3,7 @@
 from typing import Annotated
 
 from executive.core.outcome import failure, success
+from executive.core.registry import closest
 from executive.core.skill import In, Port, Skill, SkillRun
 from perception.shelf.stock import Stock
 
@@ -31,6 +32,6 @@ class TakeOrder(Skill):
         if not target:
             return failure("order.none", "no product is named, and the cell has no order")
         if target not in self._stock.names:
-            known = ", ".join(self._stock.names)
-            return failure("order.unknown", f"no product {target!r} (known: {known})", name=target)
+            known = closest(target, list(self._stock.names))
+            return failure("order.unknown", f"no product {target!r}; {known}", name=target)
         return success(target=target)
