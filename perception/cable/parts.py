@@ -15,7 +15,7 @@ EyeName = Literal["thresholds", "learned"]
 TracerName = Literal["skeleton", "analytic", "learned"]
 ClassifierName = Literal["edges", "continuity", "learned"]
 
-SIGHT, TRACER, CROSSING = "sight_v2", "tracer_v3", "crossing_v4"
+SIGHT, TRACER, CROSSING = "sight_v2", "tracer_v4", "crossing_v4"
 
 
 # Networks need the extra `learn`; who does not ask for them does without.

@@ -60,7 +60,7 @@ def _wave(bright):
     return image.clip(0, 255).astype(np.uint8), line
 
 
-@pytest.mark.parametrize("version", ["tracer_v2", "tracer_v3"])
+@pytest.mark.parametrize("version", ["tracer_v2", "tracer_v3", "tracer_v4"])
 @pytest.mark.parametrize("bright", [True, False])
 def test_the_tracer_follows_a_loop(version, bright):
     image, line = _wave(bright)
@@ -94,7 +94,7 @@ def _dense(points):
 
 
 def test_no_cable_no_trace():
-    tracer = LearnedTracer(FOLDER / "tracer_v3")
+    tracer = LearnedTracer(FOLDER / "tracer_v4")
     assert tracer.trace(np.full((200, 200), 50, np.uint8), np.array([[80.0, 90.0]]), []) is None
 
 
