@@ -252,12 +252,12 @@ def _search(name: str, scenario: Mapping[str, object], seed: int) -> Search:
 def _rows(found: Mapping[str, Sequence[Search]]) -> list[Row]:
     rows = []
     for name, searches in found.items():
-        goal = "<= 2.0" if name == "ours" else ""
+        fewest, none = ("<= 2.0", "<= 0") if name == "ours" else ("", "")
         hits = [search for search in searches if search.found]
         rows.append(share(f"success {name}", len(hits), len(searches)))
         if hits:
-            rows.append(mean(f"actions {name}", [each.actions for each in hits], "", goal))
-        rows.append(mean(f"toppled {name}", [each.toppled for each in searches], "", "<= 0"))
+            rows.append(mean(f"actions {name}", [each.actions for each in hits], "", fewest))
+        rows.append(mean(f"toppled {name}", [each.toppled for each in searches], "", none))
         rows.append(mean(f"failed actions {name}", [each.failures for each in searches], ""))
     every = [search for searches in found.values() for search in searches]
     per_action = [each.arm_s / each.actions for each in every if each.actions]
