@@ -34,6 +34,7 @@ from perception.cable.types import (
     Points,
     Reading,
     Trace,
+    TraceEnd,
     TraceStart,
 )
 from perception.camera import GreyImage
@@ -44,6 +45,8 @@ REACHED_PX = 20.0
 THROUGH_PX = 4.0
 # A trace of which more than this share lies on another one follows the same cable.
 SAME_CABLE = 0.5
+# Where a trace is believed in less, the same cable is traced from its other end, too.
+BELIEVED = 0.5
 # Other ways to read a cable than the likeliest are weighed down to this belief, so many at most.
 LEAST_READING, MOST_READINGS = 0.02, 4
 
@@ -179,7 +182,7 @@ class GreyImageVision:
             return [ways] if ways else []
         cables: list[tuple[Trace, ...]] = []
         for endpoint in endpoints:
-            if any(_accounts_for(ways[0], endpoint) for ways in cables):
+            if any(_accounts_for(ways[0], endpoint) for ways in cables if _is_believed(ways[0])):
                 continue
             ways = self._ways(image, TraceStart.at(endpoint).points_px, endpoints)
             if ways:
@@ -222,13 +225,26 @@ def _distinct(cables: Sequence[tuple[Trace, ...]]) -> list[tuple[Trace, ...]]:
     """Return each cable once, the longest first; one seen from two of its ends may come twice."""
     kept: list[tuple[Trace, ...]] = []
     for ways in sorted(cables, key=lambda ways: -ways[0].probability * _length_px(ways[0])):
-        if not any(_runs_along(ways[0], other[0]) for other in kept):
+        if not any(_are_one(ways[0], other[0]) for other in kept):
             kept.append(ways)
     return sorted(kept, key=lambda ways: -_length_px(ways[0]))
 
 
 def _length_px(trace: Trace) -> float:
     return float(arc_lengths(trace.points_px)[-1])
+
+
+def _is_believed(trace: Trace) -> bool:
+    """Say whether a trace is believed in enough not to ask from its other end as well."""
+    return trace.probability >= BELIEVED
+
+
+def _are_one(trace: Trace, other: Trace) -> bool:
+    """Say whether two traces follow the same cable: they join the same ends, or share a way."""
+    here, there = trace.points_px[[0, -1]], other.points_px[[0, -1]]
+    gaps_px = [np.linalg.norm(here - ends, axis=1).max() for ends in (there, there[::-1])]
+    joined = {trace.end, other.end} == {TraceEnd.ENDPOINT} and min(gaps_px) <= REACHED_PX
+    return joined or _runs_along(trace, other)
 
 
 def _runs_along(trace: Trace, other: Trace) -> bool:

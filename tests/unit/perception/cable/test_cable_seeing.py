@@ -315,6 +315,23 @@ def test_the_way_is_taken_that_crossings_leave_most_belief_in(knotted, monkeypat
     assert chosen["continuity"] == (TraceEnd.ENDPOINT, 0.4)
 
 
+class _OneSided(SkeletonTracer):
+    """Believes in a cable more from its right end."""
+
+    def trace(self, image, start_px, endpoints):
+        found = super().trace(image, start_px, endpoints)
+        rightwards = found.points_px[-1, 0] > found.points_px[0, 0]
+        return replace(found, probability=0.2 if rightwards else 0.7)
+
+
+def test_a_cable_hardly_believed_in_is_traced_from_its_other_end(knotted, monkeypatch):
+    _, image = knotted
+    monkeypatch.setitem(TRACERS, "analytic", lambda eye: _OneSided(observe=eye.observe))
+    scene = GreyImageVision(VisionConfig(tracer="analytic")).scene(image)
+    (trace,) = scene.traces
+    assert trace.probability == 0.7
+
+
 def test_drawing_shows_the_scene_and_leaves_the_image_alone(knotted):
     _, image = knotted
     before = image.copy()
