@@ -212,7 +212,6 @@ class _Line:
         config: SkeletonTracerConfig,
     ) -> None:
         self.mask, self.graph, self.config = mask, graph, config
-        self.partner_nodes = {arm: j for j in junctions.all for arm in j.arms}
         self.bridges: nx.Graph[int] = nx.Graph()
         for number in junctions.bridges:
             a, b = graph.edges[number].nodes

@@ -18,7 +18,6 @@ from perception.cable.belief import (
 )
 from perception.cable.crossings import decide, find_sites, strand_of
 from perception.cable.outcomes import outcomes
-from perception.cable.parity import can_be_drawn, parity_violations
 from perception.cable.parting import parting_arc
 from perception.cable.telling import (
     about_type,
@@ -27,7 +26,7 @@ from perception.cable.telling import (
     path_questions,
     telling_question,
 )
-from perception.cable.topology import curve_crossings
+from perception.cable.topology import close_over, curve_crossings
 from perception.cable.types import QuestionKind, Reading, Trace, TraceEnd
 
 
@@ -214,25 +213,22 @@ def test_entropy_is_that_of_even_chances():
 @pytest.mark.parametrize("tie", [overhand, figure_8])
 def test_crossings_of_drawn_cables_can_be_drawn(tie):
     reading = seen(tie(), 0.9)
-    strand = strand_of(reading.trace, 0, reading.crossings)
-    assert parity_violations(strand) == ()
-    assert can_be_drawn(strand)
+    assert close_over(strand_of(reading.trace, 0, reading.crossings)).is_planar()
 
 
-def test_a_missed_crossing_breaks_parity_or_faces():
+def test_with_a_missed_crossing_nothing_is_known():
     reading = seen(figure_8(), 0.9)
     told = 0
     for k in range(len(reading.crossings)):
         left = reading.crossings[:k] + reading.crossings[k + 1 :]
         strand = strand_of(reading.trace, 0, left)
-        if parity_violations(strand):
+        if not close_over(strand).is_planar():
             told += 1
-            assert not can_be_drawn(strand)
             assert chances([Reading(reading.trace, left)])["unknown"] > 0.5
     assert told >= 4
 
 
-def test_labels_do_not_matter_for_parity():
+def test_who_is_on_top_does_not_matter_for_whether_it_can_be_drawn():
     reading = seen(figure_8(), 0.9)
     ways = itertools.product((False, True), repeat=len(reading.crossings))
     for flips in itertools.islice(ways, 6):
@@ -240,4 +236,4 @@ def test_labels_do_not_matter_for_parity():
             replace(c, arc_over=c.arc_under, arc_under=c.arc_over) if flip else c
             for c, flip in zip(reading.crossings, flips, strict=True)
         )
-        assert parity_violations(strand_of(reading.trace, 0, crossings)) == ()
+        assert close_over(strand_of(reading.trace, 0, crossings)).is_planar()
