@@ -16,19 +16,18 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import minimize
 
-from perception.cable.eyes import LEAST_END, Eye
 from perception.cable.following import followed_share
+from perception.cable.observation import Observe
 from perception.cable.parts import EYES
 from perception.cable.tracers.evidence import FEATURES, NONE_FEATURES, doubts, evidence
 from perception.cable.tracers.hypotheses import hypotheses
-from perception.cable.tracers.outward import EndWeights, judged
+from perception.cable.tracers.outward import EndWeights
 from perception.cable.tracers.posterior import FILE, Weights, shares, stacked, view_at
 from perception.cable.tracers.search import SearchConfig
 from perception.cable.tracers.steps import StepModel
 from perception.cable.tracers.survey import survey
 from perception.cable.types import Endpoint, TraceEnd
-from perception.models.frames import Floats, scale_image
-from perception.models.tracer_crop import WIDTH
+from perception.models.frames import Floats
 from perception.training.calibration import expected_calibration_error, selective_error
 from perception.training.end_evidence import FIT_SEED as END_FIT_SEED
 from perception.training.end_evidence import MEASURE_SEED as END_MEASURE_SEED
@@ -44,10 +43,10 @@ START_NODES, DIRECTION_NODES = 16, 8
 START_ERROR = 0.1
 # A strand nearer than this to an end hides it [widths].
 HIDDEN = 1.5
-# What is known of ends: what is seen of them, all, one of each cable, or only the start.
-KNOWN = {"seen": 0.4, "all": 0.25, "one_each": 0.2, "start": 0.15}
+# What is known of ends: all of them, one of each cable, or only the start.
+KNOWN = {"all": 0.5, "one_each": 0.3, "start": 0.2}
 # Share of cables that are seen where they turn back tightly.
-HAIRPINS = 0.15
+HAIRPINS = 0.03
 PRIOR = 0.02
 # What searches believe speaks for a trace, all else against it; doubt speaks for none.
 FOR, AGAINST, EITHER = (0.0, None), (None, 0.0), (None, None)
@@ -67,7 +66,7 @@ class TraceTask:
         width_px: Its width.
         leaves: Whether it leaves the view.
         start_px: First points, with small errors.
-        endpoints: Ends that are known; None for those that are seen.
+        endpoints: Ends that are known.
     """
 
     scene: Scene
@@ -75,7 +74,7 @@ class TraceTask:
     width_px: float
     leaves: bool
     start_px: Floats
-    endpoints: tuple[Endpoint, ...] | None
+    endpoints: tuple[Endpoint, ...]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -149,7 +148,7 @@ def _task(
         scene.cables[chosen % half].width_px,
         len(visible) < len(line),
         first + error_px,
-        None if known == "seen" else tuple(ends),
+        tuple(ends),
     )
 
 
@@ -169,22 +168,17 @@ def is_right(task: TraceTask, points_px: Floats, end: TraceEnd) -> bool:
     return followed_share(truth, points_px, 1.3 * width_px, 5.0 * width_px) >= 1.0
 
 
-def examples(
-    model: StepModel, eye: Eye, ends: EndWeights, seed: int, wanted: int
-) -> Iterator[Example]:
-    """Yield what searches found in scenes of a seed, as an eye sees them."""
+def examples(model: StepModel, observe: Observe, seed: int, wanted: int) -> Iterator[Example]:
+    """Yield what searches found in scenes of a seed, as they are observed."""
     for number in range(wanted):
-        task = draw_task(np.random.default_rng([seed, number]))
-        image = task.scene.image
-        view = view_at(eye.observe, image, task.start_px)
+        rng = np.random.default_rng([seed, number])
+        task = draw_task(rng)
+        view = view_at(observe, task.scene.image, task.start_px)
         if view is None:
             continue
-        known = task.endpoints
-        if known is None:
-            scaled = scale_image(image, view.width_px, WIDTH, model.zoom)
-            told = judged(model, scaled, eye.endpoints(image), ends)
-            known = tuple(end for end in told if end.probability >= LEAST_END)
-        found = survey(model, SearchConfig(), image, view, [task.start_px], known)
+        found = survey(
+            model, SearchConfig(), task.scene.image, view, [task.start_px], task.endpoints
+        )
         candidates = hypotheses(found, 0)
         right = [is_right(task, found.image.back(one.points), one.end) for one in candidates]
         yield Example(evidence(found, 0, candidates), doubts(found, 0), np.array(right, dtype=bool))
@@ -243,9 +237,9 @@ def main(arguments: Sequence[str] | None = None) -> None:
     options = parser.parse_args(arguments)
     model, eye = StepModel(options.folder), EYES["learned"]()
     ends = fit_ends(seen_ends(model, eye, END_FIT_SEED, options.scenes))
-    weights = fit(list(examples(model, eye, ends, SEED, options.scenes)), ends)
+    weights = fit(list(examples(model, eye.observe, SEED, options.scenes)), ends)
     (options.folder / FILE).write_text(weights.model_dump_json(indent=2) + "\n")
-    held_out = list(examples(model, eye, ends, HELD_OUT_SEED, options.held_out))
+    held_out = list(examples(model, eye.observe, HELD_OUT_SEED, options.held_out))
     told = seen_ends(model, eye, END_MEASURE_SEED, options.held_out)
     path = options.folder / "metrics.json"
     metrics = json.loads(path.read_text())

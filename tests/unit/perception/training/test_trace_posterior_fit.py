@@ -56,5 +56,5 @@ def test_tasks_start_at_ends_in_view_and_the_truth_is_right():
         assert is_right(task, task.line_px, end)
         assert not is_right(task, task.line_px, other)
         assert not is_right(task, task.line_px[: len(task.line_px) // 2], end)
-        for known in task.endpoints or ():
+        for known in task.endpoints:
             assert ((known.position_px > 0.0) & (known.position_px < size)).all()
