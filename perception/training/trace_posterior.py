@@ -46,7 +46,7 @@ HIDDEN = 1.5
 # What is known of ends: all of them, one of each cable, or only the start.
 KNOWN = {"all": 0.5, "one_each": 0.3, "start": 0.2}
 # Share of cables that are seen where they turn back tightly.
-HAIRPINS = 0.03
+HAIRPINS = 0.15
 PRIOR = 0.02
 # What searches believe speaks for a trace, all else against it; doubt speaks for none.
 FOR, AGAINST, EITHER = (0.0, None), (None, 0.0), (None, None)
