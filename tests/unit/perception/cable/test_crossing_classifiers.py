@@ -3,24 +3,27 @@ import itertools
 import numpy as np
 import pytest
 
-torch = pytest.importorskip("torch")
-safetensors = pytest.importorskip("safetensors.torch")
+pytest.importorskip("torch")
+pytest.importorskip("safetensors.torch")
 
-from perception.cable.classifiers.continuity import ContinuityClassifier  # noqa: E402
-from perception.cable.classifiers.edges import EdgeClassifier  # noqa: E402
-from perception.cable.classifiers.learned import LearnedClassifier  # noqa: E402
-from perception.cable.classifiers.passes import StrandPass, path_through  # noqa: E402
-from perception.cable.classifiers.thesis import (  # noqa: E402
+import safetensors.torch
+import torch
+
+from perception.cable.classifiers.continuity import ContinuityClassifier
+from perception.cable.classifiers.edges import EdgeClassifier
+from perception.cable.classifiers.learned import LearnedClassifier
+from perception.cable.classifiers.passes import StrandPass, path_through
+from perception.cable.classifiers.thesis import (
     ThesisClassifier,
     confidence,
     corrected,
 )
-from perception.cable.parts import CROSSING  # noqa: E402
-from perception.cable.types import Trace, TraceEnd  # noqa: E402
-from perception.models.crossing_ribbon_net import CrossingRibbonNet  # noqa: E402
-from perception.models.store import FOLDER  # noqa: E402
-from perception.models.thesis_crossing_net import ThesisCrossingNet  # noqa: E402
-from perception.training.scenes import SceneConfig, lay_scene, make_scene  # noqa: E402
+from perception.cable.parts import CROSSING
+from perception.cable.types import Trace, TraceEnd
+from perception.models.crossing_ribbon_net import CrossingRibbonNet
+from perception.models.store import FOLDER
+from perception.models.thesis_crossing_net import ThesisCrossingNet
+from perception.training.scenes import SceneConfig, lay_scene, make_scene
 
 SCORES = np.linspace(0.0, 1.0, 12)
 CONFIG = SceneConfig(
@@ -36,7 +39,7 @@ def classifier(request, tmp_path):
         "ribbons": (CrossingRibbonNet, (8, 8, 16, 16, 16), LearnedClassifier, "crossing_ribbons"),
         "thesis": (ThesisCrossingNet, (8, 8, 16, 16), ThesisClassifier, "thesis_crossing"),
     }[request.param]
-    safetensors.save_file(network(widths).state_dict(), tmp_path / "weights.safetensors")
+    safetensors.torch.save_file(network(widths).state_dict(), tmp_path / "weights.safetensors")
     (tmp_path / "config.json").write_text(f'{{"network": "{name}", "widths": {list(widths)}}}')
     return make(tmp_path)
 

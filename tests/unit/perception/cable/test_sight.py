@@ -2,15 +2,16 @@ import cv2
 import numpy as np
 import pytest
 
-torch = pytest.importorskip("torch")
+pytest.importorskip("torch")
+
 pytest.importorskip("safetensors.torch")
 
-from executive.core.errors import InputError  # noqa: E402  # after the skip
-from perception.cable.parts import SIGHT  # noqa: E402
-from perception.cable.sight.scales import BEST_PX, better_scale  # noqa: E402
-from perception.cable.sight.sight import Sight  # noqa: E402
-from perception.models.sight_input import CHANNELS, MULTIPLE, prepare  # noqa: E402
-from perception.models.store import FOLDER  # noqa: E402
+from executive.core.errors import InputError
+from perception.cable.parts import SIGHT
+from perception.cable.sight.scales import BEST_PX, better_scale
+from perception.cable.sight.sight import Sight
+from perception.models.sight_input import CHANNELS, MULTIPLE, prepare
+from perception.models.store import FOLDER
 
 # What OpenCV draws with a thickness of 7 and smooth borders, by area over length.
 WIDTH_PX = 8.8

@@ -2,21 +2,24 @@ import json
 
 import pytest
 
-torch = pytest.importorskip("torch")
-safetensors = pytest.importorskip("safetensors.torch")
+pytest.importorskip("torch")
+pytest.importorskip("safetensors.torch")
 
-from executive.core.errors import InputError  # noqa: E402  # after the skip
-from perception.models.crossing_ribbon import ACROSS, ALONG, CHANNELS  # noqa: E402
-from perception.models.crossing_ribbon_net import CrossingRibbonNet  # noqa: E402
-from perception.models.store import load_network  # noqa: E402
-from perception.models.tracer_math import cell_targets, step_logits  # noqa: E402
-from perception.models.tracer_net import TracerNet  # noqa: E402
+import safetensors.torch
+import torch
+
+from executive.core.errors import InputError
+from perception.models.crossing_ribbon import ACROSS, ALONG, CHANNELS
+from perception.models.crossing_ribbon_net import CrossingRibbonNet
+from perception.models.store import load_network
+from perception.models.tracer_math import cell_targets, step_logits
+from perception.models.tracer_net import TracerNet
 
 WIDTHS = (8, 8, 16, 16)
 
 
 def _saved(folder, name, network):
-    safetensors.save_file(network.state_dict(), folder / "weights.safetensors")
+    safetensors.torch.save_file(network.state_dict(), folder / "weights.safetensors")
     (folder / "config.json").write_text(json.dumps({"network": name, "widths": WIDTHS}))
 
 

@@ -4,23 +4,26 @@ import cv2
 import numpy as np
 import pytest
 
-torch = pytest.importorskip("torch")
-safetensors = pytest.importorskip("safetensors.torch")
+pytest.importorskip("torch")
+pytest.importorskip("safetensors.torch")
 
-from perception.cable.classifiers.learned import LearnedClassifier  # noqa: E402  # after the skip
-from perception.cable.interfaces import CrossingClassifier, Tracer  # noqa: E402
-from perception.cable.tracers.learned import LearnedTracer  # noqa: E402
-from perception.cable.types import Endpoint, Trace, TraceEnd  # noqa: E402
-from perception.cable.vision import GreyImageVision, VisionConfig  # noqa: E402
-from perception.models.store import FOLDER, load_network, read_config  # noqa: E402
-from perception.training.scenes import SceneConfig, make_scene  # noqa: E402
+import safetensors.torch
+import torch
+
+from perception.cable.classifiers.learned import LearnedClassifier
+from perception.cable.interfaces import CrossingClassifier, Tracer
+from perception.cable.tracers.learned import LearnedTracer
+from perception.cable.types import Endpoint, Trace, TraceEnd
+from perception.cable.vision import GreyImageVision, VisionConfig
+from perception.models.store import FOLDER, load_network, read_config
+from perception.training.scenes import SceneConfig, make_scene
 
 VERSIONS = sorted(path.parent for path in FOLDER.glob("*/config.json"))
 
 
 @pytest.mark.parametrize("folder", VERSIONS, ids=lambda folder: folder.name)
 def test_a_version_answers_as_on_the_day_it_was_trained(folder):
-    golden = safetensors.load_file(folder / "golden.safetensors")
+    golden = safetensors.torch.load_file(folder / "golden.safetensors")
     with torch.inference_mode():
         answer = load_network(folder)(golden["inputs"])
     answer = answer if isinstance(answer, torch.Tensor) else answer[0]

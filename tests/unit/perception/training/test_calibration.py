@@ -1,9 +1,11 @@
 import numpy as np
 import pytest
 
-torch = pytest.importorskip("torch")
+pytest.importorskip("torch")
 
-from perception.training.calibration import (  # noqa: E402  # after the skip
+import torch
+
+from perception.training.calibration import (
     expected_calibration_error,
     fit_temperature,
     selective_error,

@@ -1,14 +1,16 @@
 import numpy as np
 import pytest
 
-torch = pytest.importorskip("torch")
+pytest.importorskip("torch")
 
-from perception.cable.classifiers.passes import path_through  # noqa: E402  # after the skip
-from perception.cable.polyline import arc_lengths, point_at  # noqa: E402
-from perception.training.crossing import CrossingTask, scene_ribbons  # noqa: E402
-from perception.training.crossing_samples import MeetingConfig, meetings  # noqa: E402
-from perception.training.scenes import SceneConfig, make_scene  # noqa: E402
-from perception.training.thesis_crossing import ThesisCrossingTask, crossing_visits  # noqa: E402
+import torch
+
+from perception.cable.classifiers.passes import path_through
+from perception.cable.polyline import arc_lengths, point_at
+from perception.training.crossing import CrossingTask, scene_ribbons
+from perception.training.crossing_samples import MeetingConfig, meetings
+from perception.training.scenes import SceneConfig, make_scene
+from perception.training.thesis_crossing import ThesisCrossingTask, crossing_visits
 
 SMALL = SceneConfig(extent=24.0, narrowest_px=5.0, widest_px=7.0)
 EXACT = MeetingConfig(aside=0.0, jitter=0.0, coarse=0.0)

@@ -4,12 +4,14 @@ import signal
 import numpy as np
 import pytest
 
-torch = pytest.importorskip("torch")
+pytest.importorskip("torch")
 
-from executive.core.errors import InputError  # noqa: E402  # after the skip
-from perception.training import loop  # noqa: E402
-from perception.training.loop import Trainer, TrainingStoppedError  # noqa: E402
-from perception.training.recipes import Recipe  # noqa: E402
+import torch
+
+from executive.core.errors import InputError
+from perception.training import loop
+from perception.training.loop import Trainer, TrainingStoppedError
+from perception.training.recipes import Recipe
 
 
 class Line:

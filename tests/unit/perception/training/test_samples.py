@@ -3,12 +3,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-torch = pytest.importorskip("torch")
+pytest.importorskip("torch")
 
-from perception.models import tracer_crop  # noqa: E402  # after the skip
-from perception.training.scenes import SceneConfig, make_scene  # noqa: E402
-from perception.training.tracer import ZOOM, TracerTask, mirrored  # noqa: E402
-from perception.training.tracer_samples import (  # noqa: E402
+import torch
+
+from perception.models import tracer_crop
+from perception.training.scenes import SceneConfig, make_scene
+from perception.training.tracer import ZOOM, TracerTask, mirrored
+from perception.training.tracer_samples import (
     NOWHERE,
     SampleConfig,
     scene_samples,

@@ -1,13 +1,15 @@
 import numpy as np
 import pytest
 
-torch = pytest.importorskip("torch")
+pytest.importorskip("torch")
 
-from perception.models import sight_net  # noqa: E402  # after the skip
-from perception.models.sight_input import STRIDE  # noqa: E402
-from perception.training import sight_targets as wanted  # noqa: E402
-from perception.training.sight import SightTask, end_loss, heat_loss  # noqa: E402
-from perception.training.sight_scenes import draw_truth, relit, turned  # noqa: E402
+import torch
+
+from perception.models import sight_net
+from perception.models.sight_input import STRIDE
+from perception.training import sight_targets as wanted
+from perception.training.sight import SightTask, end_loss, heat_loss
+from perception.training.sight_scenes import draw_truth, relit, turned
 
 SIDE = 192
 
