@@ -1,17 +1,21 @@
 """The process that runs missions: it has loaded what they need, and forks once for each.
 
 So a run begins in milliseconds and has a process of its own: what it leaves in memory goes with
-it, and one that hangs, takes too much or dies loses only itself. Reads a line of JSON a run on
-standard input, and writes one for each on standard output; started by `RunProcess`.
+it, and one that hangs, takes too much or dies loses only itself. The process of the first run
+that ends in order stays and forks the later ones, since it has loaded all that a run needs:
+modules, compiled kernels, networks. Reads a line of JSON a run on standard input, and writes one
+for each on standard output; started by `RunProcess`.
 """
 
-import importlib
+import gc
 import os
 import select
 import signal
 import socket
 import sys
+import threading
 import time
+from collections.abc import Iterable
 from contextlib import suppress
 from pathlib import Path
 from typing import IO, NoReturn
@@ -21,7 +25,7 @@ from executive.app.campaigns.one_run import lost, run_job
 from executive.app.missions import load
 from executive.core.errors import InputError
 from executive.engine.faults.processes import GRACE_S
-from executive.engine.faults.tether import tie_to_stdin
+from executive.engine.faults.tether import TETHER, tie_to_stdin
 from executive.engine.loading.loader import Mission
 from executive.engine.recording.messages import (
     MissionHeader,
@@ -32,6 +36,8 @@ from executive.engine.recording.messages import (
 from executive.engine.running.mission_run import versions
 
 POLL_S = 0.1
+_STAYS = b"\nstays"
+_OOM_SCORE = Path("/proc/self/oom_score_adj")
 _STDIN = 0
 _PAGE_BYTES = os.sysconf("SC_PAGE_SIZE")
 
@@ -44,46 +50,52 @@ class Forker:
         self._mission, self._assignment, self._answers = mission, assignment, answers
         self._warm = False
 
-    def run(self, job: Job) -> RunRecord:
-        """Run one mission in a child, within its limits."""
-        began_s = time.monotonic()
-        readable, writable = os.pipe()
-        pid = os.fork()
-        if pid == 0:
-            os.close(readable)
-            self._be_child(job, writable)
-        os.close(writable)
-        try:
-            data, ending = self._awaited(pid, readable, began_s)
-        finally:
-            os.close(readable)
-        os.waitid(os.P_PID, pid, os.WEXITED | os.WNOWAIT)
-        _kill(pid, signal.SIGKILL)  # what it has left behind
-        _, status, usage = os.wait4(pid, 0)
-        record = self._record(job, data, ending, os.waitstatus_to_exitcode(status))
-        return record.model_copy(
-            update={
-                "wall_s": time.monotonic() - began_s,
-                "peak_mb": usage.ru_maxrss / 1024.0,
-                "host": socket.gethostname(),
-            }
-        )
+    def serve(self, lines: Iterable[str]) -> None:
+        """Run a mission for each line, until a child has taken over or the lines end."""
+        for line in lines:
+            job, began_s = Job.model_validate_json(line), time.monotonic()
+            readable, writable = os.pipe()
+            pid = os.fork()
+            if pid == 0:
+                os.close(readable)
+                self._be_child(job, writable, lines)
+            os.close(writable)
+            try:
+                data, ending = self._awaited(pid, readable, began_s)
+            finally:
+                os.close(readable)
+            stays = ending is None and data.endswith(_STAYS)
+            code, peak_mb = (0, _peak_mb(pid)) if stays else _reaped(pid)
+            record = self._record(job, data.removesuffix(_STAYS), ending, code)
+            self._answer(record, time.monotonic() - began_s, peak_mb)
+            if stays:
+                os.waitpid(pid, 0)
+                return
 
-    def _be_child(self, job: Job, writable: int) -> NoReturn:
+    def _be_child(self, job: Job, writable: int, lines: Iterable[str]) -> NoReturn:
         code = 1
         try:
             os.setpgid(0, 0)  # with all that it starts, to be ended together
             tie_to_stdin()
-            _be_first_to_go()
+            usual = _be_first_to_go()
             with os.fdopen(writable, "wb") as pipe:
-                before = set(sys.modules)
                 record = run_job(self._mission, self._assignment, job)
-                new = [] if self._warm else [name for name in sys.modules if name not in before]
-                pipe.write(record.model_dump_json().encode() + b"\n" + "\n".join(new).encode())
+                stays = not self._warm and _is_alone()
+                pipe.write(record.model_dump_json().encode() + (_STAYS if stays else b""))
+            if stays:
+                self._take_over(usual, lines)
             code = 0
         finally:
             # Not `sys.exit`: what the parent has registered to be done at its end is not ours.
             os._exit(code)
+
+    def _take_over(self, usual: str, lines: Iterable[str]) -> None:
+        """Fork the later runs from this process, which has run one."""
+        _go_last_again(usual)
+        gc.collect()
+        gc.freeze()  # collecting would write to pages that children share
+        self._warm = True
+        self.serve(lines)
 
     def _awaited(self, pid: int, readable: int, began_s: float) -> tuple[bytes, Ending | None]:
         """Read what a child answers; end it when it goes beyond its limits."""
@@ -118,23 +130,40 @@ class Forker:
         if ending == "overdue":
             said = f"took more than {self._assignment.wall_s:g} s here"
             return lost(job, ending, said, self._assignment)
-        answer, _, modules = data.decode().partition("\n")
-        if code != 0 or not answer:
+        if code != 0 or not data:
             return lost(job, "died", _exit_words(code), self._assignment)
-        self._load(modules.split())
-        return RunRecord.model_validate_json(answer)
+        return RunRecord.model_validate_json(data)
 
-    def _load(self, modules: list[str]) -> None:
-        """Import what the first run has imported, so that the others need not."""
-        for name in modules if not self._warm else ():
-            with suppress(Exception):  # it was imported from within another one
-                importlib.import_module(name)
-        self._warm = True
-
-    def answer(self, record: RunRecord) -> None:
+    def _answer(self, record: RunRecord, wall_s: float, peak_mb: float) -> None:
         """Say what a run came to."""
-        self._answers.write(record.model_dump_json() + "\n")
+        told = {"wall_s": wall_s, "peak_mb": peak_mb, "host": socket.gethostname()}
+        self._answers.write(record.model_copy(update=told).model_dump_json() + "\n")
         self._answers.flush()
+
+
+def _reaped(pid: int) -> tuple[int, float]:
+    """Return a child's exit code and the most memory it had [MB], once all of it has ended."""
+    os.waitid(os.P_PID, pid, os.WEXITED | os.WNOWAIT)
+    _kill(pid, signal.SIGKILL)  # what it has left behind
+    _, status, usage = os.wait4(pid, 0)
+    return os.waitstatus_to_exitcode(status), usage.ru_maxrss / 1024.0
+
+
+def _is_alone() -> bool:
+    """Whether a run has left neither threads nor processes, whose locks a fork would keep."""
+    tasks = list(Path("/proc/self/task").iterdir())
+    threads = [one for one in threading.enumerate() if one.name != TETHER]
+    children = [(task / "children").read_text(encoding="ascii") for task in tasks]
+    return len(threads) == 1 and len(tasks) == 2 and not any(children)
+
+
+def _peak_mb(pid: int) -> float:
+    """Return the most memory that a live process has had [MB]."""
+    with suppress(OSError):
+        for line in Path(f"/proc/{pid}/status").read_text(encoding="ascii").splitlines():
+            if line.startswith("VmHWM:"):
+                return int(line.split()[1]) / 1024.0
+    return 0.0
 
 
 def _resident_mb(pid: int) -> float:
@@ -145,10 +174,18 @@ def _resident_mb(pid: int) -> float:
     return pages * _PAGE_BYTES / 2**20
 
 
-def _be_first_to_go() -> None:
-    """Let the system end this process before others when memory runs out."""
+def _be_first_to_go() -> str:
+    """Let the system end this process before others when memory runs out; return how it was."""
+    usual = ""
     with suppress(OSError):
-        Path("/proc/self/oom_score_adj").write_text("1000", encoding="ascii")
+        usual = _OOM_SCORE.read_text(encoding="ascii")
+        _OOM_SCORE.write_text("1000", encoding="ascii")
+    return usual
+
+
+def _go_last_again(usual: str) -> None:
+    with suppress(OSError):
+        _OOM_SCORE.write_text(usual, encoding="ascii")
 
 
 def _kill(pid: int, number: signal.Signals) -> None:
@@ -208,8 +245,7 @@ def main() -> None:
         sys.exit(str(error))
     answers.write("ready\n")
     answers.flush()
-    for line in lines:
-        forker.answer(forker.run(Job.model_validate_json(line)))
+    forker.serve(lines)
 
 
 if __name__ == "__main__":

@@ -12,6 +12,9 @@ from executive.app.campaigns.one_run import lost
 from executive.core.errors import InputError
 
 _LAST_WORDS = 2000
+
+# Threads of a library do not come along into a forked run, which would wait for them.
+_THREADS_OF = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "OPENCV_FOR_THREADS_NUM")
 _COMMAND = (sys.executable, "-m", "executive.app.campaigns.forker")
 
 
@@ -57,7 +60,7 @@ class _Live:
             stderr=self._said,
             text=True,
             start_new_session=True,
-            env={**os.environ, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"},
+            env={**os.environ, **dict.fromkeys(_THREADS_OF, "1")},
         )
         if self.answer(assignment.model_dump_json()) != "ready\n":
             self._process.wait()

@@ -8,6 +8,8 @@ from pathlib import Path
 SKILL = '''
 import os
 import signal
+import subprocess
+import threading
 import time
 from executive.core.outcome import failure, success
 from executive.core.skill import Port, Skill, SkillRun
@@ -35,6 +37,12 @@ class MayBreak(Skill):
             yield
         while way == "hang":
             time.sleep(0.05)
+        if way == "thread":
+            threading.Thread(target=time.sleep, args=(1e6,), daemon=True).start()
+        if way == "child":
+            subprocess.Popen(["sleep", "1000"])
+        if way in ("neat", "thread", "child"):
+            return success(claim=float(os.getppid()))
         hoard = []
         while way == "hoard":
             hoard.append(bytearray(b"x" * 50_000_000))

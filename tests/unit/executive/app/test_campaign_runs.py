@@ -31,6 +31,17 @@ def results(one, workers=2):
     return {record.name: record for record in one.run(Where(workers))}
 
 
+@pytest.mark.parametrize("way, parents", [("neat", 2), ("thread", 1), ("child", 1)])
+def test_later_runs_are_forked_from_the_first_if_that_left_nothing_behind(toy, way, parents):
+    one = campaign(toy, f"grid: {{way: [{way}]}}\nseeds: [1, 2, 3]\n")
+    one.begin()
+    found = list(results(one, workers=1).values())
+    assert [record.outcome for record in found] == ["success"] * 3
+    claimed = [record.measures["claim"] for record in found]  # the process it was forked from
+    assert len(set(claimed)) == parents
+    assert claimed[1] == claimed[2]
+
+
 def test_one_run_that_breaks_loses_only_itself(toy):
     one = campaign(
         toy,
