@@ -38,6 +38,14 @@ class JudgedSite:
     real: float
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class _Remembered:
+    """What has been judged of the latest image, by the points of traces."""
+
+    image: tuple[tuple[int, ...], bytes] | tuple[()]
+    judged: dict[tuple[bytes, ...], tuple[JudgedSite, ...]]
+
+
 class LearnedClassifier:
     """Implements `CrossingClassifier` and `TraceDoubter` with a trained network.
 
@@ -53,6 +61,8 @@ class LearnedClassifier:
         self._observe = observe
         self._network = load_network(folder)
         self._temperature = read_config(folder).temperature
+        # Steps of perception ask again about the same image and traces.
+        self._remembered = _Remembered((), {})
 
     def classify(self, image: GreyImage, traces: Sequence[Trace]) -> tuple[Crossing, ...]:
         """Return every crossing; see `CrossingClassifier.classify`."""
@@ -77,6 +87,17 @@ class LearnedClassifier:
         """Return both beliefs about every crossing of the traces, all in one pass."""
         if not traces:
             return ()
+        seen = (image.shape, image.tobytes())
+        remembered = self._remembered
+        if remembered.image != seen:
+            remembered = self._remembered = _Remembered(seen, {})
+        judged = remembered.judged
+        lines = tuple(trace.points_px.tobytes() for trace in traces)
+        if lines not in judged:
+            judged[lines] = self._judge(image, traces)
+        return judged[lines]
+
+    def _judge(self, image: GreyImage, traces: Sequence[Trace]) -> tuple[JudgedSite, ...]:
         width_px = self._width(image, traces)
         sites = find_sites(traces, width_px)
         if not sites:

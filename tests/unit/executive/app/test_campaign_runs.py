@@ -31,7 +31,7 @@ def results(one, workers=2):
     return {record.name: record for record in one.run(Where(workers))}
 
 
-@pytest.mark.parametrize("way, parents", [("neat", 2), ("thread", 1), ("child", 1)])
+@pytest.mark.parametrize(("way", "parents"), [("neat", 2), ("thread", 1), ("child", 1)])
 def test_later_runs_are_forked_from_the_first_if_that_left_nothing_behind(toy, way, parents):
     one = campaign(toy, f"grid: {{way: [{way}]}}\nseeds: [1, 2, 3]\n")
     one.begin()
