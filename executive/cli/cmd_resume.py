@@ -19,6 +19,7 @@ from executive.cli.reported_run import (
     OverwriteOption,
     Prepared,
     RecordOption,
+    SpeedOption,
     Subject,
     TimeoutOption,
     ViewOption,
@@ -69,6 +70,7 @@ def resume(
     record: RecordOption = None,
     overwrite: OverwriteOption = False,
     timeout: TimeoutOption = None,
+    speed: SpeedOption = None,
     view: ViewOption = False,
     html: HtmlOption = None,
     as_json: JsonOption = False,
@@ -88,7 +90,7 @@ def resume(
     def prepare(control: RunControl, console: Console, stack: ExitStack) -> Prepared:
         return _prepared(earlier, request, control, console, stack)
 
-    subject = Subject(earlier.header.mission, earlier.header.seed, view, html, Debugging())
+    subject = Subject(earlier.header.mission, earlier.header.seed, view, html, Debugging(), speed)
     run_and_exit(subject, prepare, as_json=as_json)
 
 

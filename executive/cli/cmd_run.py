@@ -20,6 +20,7 @@ from executive.cli.reported_run import (
     PausedOption,
     Prepared,
     RecordOption,
+    SpeedOption,
     Subject,
     TimeoutOption,
     ViewOption,
@@ -59,6 +60,7 @@ def run(
     record: RecordOption = None,
     overwrite: OverwriteOption = False,
     timeout: TimeoutOption = None,
+    speed: SpeedOption = None,
     view: ViewOption = False,
     html: HtmlOption = None,
     breakpoints: BreakOption = None,
@@ -90,7 +92,7 @@ def run(
         return _prepared(request, control, console, stack)
 
     debugging = Debugging(tuple(breakpoints or ()), breaks, paused)
-    run_and_exit(Subject(mission, seed, view, html, debugging), prepare, as_json=as_json)
+    run_and_exit(Subject(mission, seed, view, html, debugging, speed), prepare, as_json=as_json)
 
 
 def _prepared(

@@ -43,6 +43,12 @@ OverwriteOption = Annotated[
 TimeoutOption = Annotated[
     float | None, typer.Option(min=0.0, help="Limit on the cell's clock, in seconds.")
 ]
+SpeedOption = Annotated[
+    float | None,
+    typer.Option(
+        min=0.05, help="At most so many times as fast as real time; 1 to watch a simulation."
+    ),
+]
 ViewOption = Annotated[bool, typer.Option("--view", help="Show the cell live in a browser.")]
 HtmlOption = Annotated[
     Path | None,
@@ -87,6 +93,7 @@ class Subject:
     view: bool
     html: Path | None
     debugging: "Debugging"
+    speed: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -159,12 +166,14 @@ def _recorded_run(
         prepared = prepare(control, console, stack)
         # Only now, with the input in order, is it worth loading what a run needs.
         from executive.engine.running.mission_run import recorded_nodes, run_mission
+        from executive.engine.running.pace import Pace
 
         tree, debugger = prepared.tree, _debugger(subject.debugging, prepared.tree, control)
         world = prepared.plan.mission.cell.world
         live = [stack.enter_context(closing(_live_view(world, console)))] if subject.view else []
         with RunDisplay(console, recorded_nodes(tree.nodes)) as display:
-            observers: tuple[RunObserver, ...] = (display, *live)
+            pace = [Pace(subject.speed)] if subject.speed is not None else []
+            observers: tuple[RunObserver, ...] = (display, *live, *pace)
             done = run_mission(prepared.plan, tree, prepared.cell, control, observers, debugger)
     return _Result(done.report, done.slow, done.raised, done.injected)
 

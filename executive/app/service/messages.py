@@ -28,6 +28,9 @@ class MissionRequest(_Message):
     timeout_s: Annotated[float, Field(gt=0.0, allow_inf_nan=False)] | None = Field(
         default=None, description="Limit on the cell's clock [s]; that of the mission otherwise."
     )
+    speed: Annotated[float, Field(ge=0.05, allow_inf_nan=False)] | None = Field(
+        default=None, description="At most so many times as fast as real time."
+    )
     key: Annotated[str, StringConstraints(max_length=100)] = Field(
         default="",
         description="Any text of the client's: a request that comes again with the same one is "

@@ -42,6 +42,8 @@ def run_words(request: MissionRequest) -> list[str]:
     words = ["run", request.mission, "--seed", str(request.seed)]
     if request.timeout_s is not None:
         words += ["--timeout", f"{request.timeout_s:.9g}"]
+    if request.speed is not None:
+        words += ["--speed", f"{request.speed:.9g}"]
     for key, value in request.settings.items():
         words += ["--set", f"{key}={json.dumps(value)}"]
     return words
