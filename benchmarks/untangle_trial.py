@@ -24,6 +24,8 @@ from executive.inspector.times import node_times
 
 # Who is killed after so much time here has hung.
 LONGEST_S = 10_800.0
+# Exit codes of missions that were run: success, failure, error.
+RAN = (0, 1, 3)
 # The mission as from the command line; says at last what it has cost of processors' time.
 MISSION = """
 import sys, time
@@ -137,7 +139,7 @@ def tried(wanted: Wanted, folder: Path) -> Trial:
     answer = subprocess.run(
         command, capture_output=True, text=True, env=environment, timeout=LONGEST_S, check=False
     )
-    if answer.returncode not in (0, 1):
+    if answer.returncode not in RAN:
         told = answer.stderr[-2000:] or answer.stdout[-2000:]
         raise RuntimeError(f"{wanted.name()}: exit code {answer.returncode}\n{told}")
     report, cpu_s = RunReport.model_validate_json(answer.stdout), answer.stderr.split()[-1]

@@ -16,6 +16,8 @@ UPRIGHT: Quat = (0.0, 0.0, 0.0, 1.0)
 TABLE_SIZE_M = (1.0, 0.75)
 # Thin enough that the robot's feet (their top is 40 mm below the table's surface) fit under it.
 TABLE_THICKNESS_M = 0.03
+# A knot is three strands high at most; grippers come down from twice as high.
+CABLE_ROOM_M = 0.03
 
 
 # The ready pose: elbows out, hands beside the table. Seen from 1.2 m above the table's centre,
@@ -97,11 +99,20 @@ class AttachedBox:
 
 @dataclass(frozen=True, slots=True)
 class PlanningScene:
-    """The robot's placement, the boxes that it must not touch, and those that it carries."""
+    """What a robot moves among.
+
+    Attributes:
+        placement: Where it stands.
+        boxes: What it must not touch.
+        attached: What it carries.
+        kept_clear: Room of loose things, which arms that come by would sweep away: free motions
+            keep out of it that can, and begin and end outside.
+    """
 
     placement: Placement
     boxes: tuple[StaticBox, ...] = ()
     attached: tuple[AttachedBox, ...] = ()
+    kept_clear: tuple[StaticBox, ...] = ()
 
 
 YUMI_AT_TABLE = Placement(position_m=(0.0, -0.425, -0.10), yaw_rad=pi / 2)
@@ -114,6 +125,12 @@ def table_top(
     return StaticBox("table", (0.0, 0.0, -thickness_m / 2), (*size_m, thickness_m))
 
 
-def table_scene() -> PlanningScene:
+def room_of_cable(size_m: tuple[float, float] = TABLE_SIZE_M) -> StaticBox:
+    """Return the room over the table in which cable lies, knots and all."""
+    centre_m = (0.0, 0.0, 0.5 * CABLE_ROOM_M)
+    return StaticBox("room of the cable", centre_m, (*size_m, CABLE_ROOM_M))
+
+
+def table_scene(placement: Placement = YUMI_AT_TABLE) -> PlanningScene:
     """Return the YuMi at the long side of the table, looking along +y."""
-    return PlanningScene(YUMI_AT_TABLE, (table_top(),))
+    return PlanningScene(placement, (table_top(),), kept_clear=(room_of_cable(),))

@@ -148,12 +148,16 @@ class ToolShape:
         overlap_m: How far along an object's side the blade must reach to push it.
         gap_m: What stays between a pushed object and what stopped it.
         suction: Whether there is a cup.
+        lift_kg: What it lifts, when that is close to its lips.
+        lift_nm: The greatest moment about its lips that it takes, of what hangs out before them.
     """
 
     blade_m: float = 0.01
     overlap_m: float = 0.02
     gap_m: float = 0.002
     suction: bool = True
+    lift_kg: float = float("inf")
+    lift_nm: float = float("inf")
 
 
 @runtime_checkable

@@ -2,7 +2,7 @@
 
 from math import pi
 
-from robots.placement import Placement, PlanningScene, table_top
+from robots.placement import Placement, PlanningScene, table_scene
 from simulation.cable.parameters import RodParameters
 from simulation.table_cell_config import CableConfig, LayoutConfig, Stiffness
 
@@ -22,4 +22,4 @@ def rod_parameters(cable: CableConfig) -> RodParameters:
 def planning_scene(layout: LayoutConfig) -> PlanningScene:
     """Return the YuMi behind the middle of the table, looking along +y, and the table."""
     placement = Placement((0.0, layout.robot_y_m, layout.body_z_m), 0.5 * pi)
-    return PlanningScene(placement, (table_top(),))
+    return table_scene(placement)

@@ -99,6 +99,8 @@ class MotionPlanner:
         """
         self.solver.set_openings(openings_m)
         self.solver.together.excuse(positions_rad)
+        if None in self.solver.clear:
+            self.solver.clear[None].excuse(positions_rad)
 
     @costed
     def to_goals(
@@ -133,7 +135,7 @@ class MotionPlanner:
         for end in ends if len(arms) == 2 else ():
             motions = {}
             for arm in arms:
-                alone = self._to_any(start, [end], (arm,), self.solver.alone[arm])
+                alone = self._to_any(start, [end], (arm,), alone=arm)
                 if not isinstance(alone, MotionFailure):
                     motions[arm] = alone
             if len(motions) == len(arms):
@@ -193,11 +195,28 @@ class MotionPlanner:
         start: Floats,
         ends: Sequence[Floats],
         arms: Sequence[str],
-        checker: CollisionModel | None = None,
+        *,
+        alone: str | None = None,
+    ) -> Trajectory | MotionFailure:
+        """Plan over loose things where that can be, else between them."""
+        clear = self.solver.clear.get(alone)
+        if clear is not None and not clear.collides(start):
+            outside = [end for end in ends if not clear.collides(end)]
+            answer = self._among(start, outside, arms, clear) if outside else None
+            if isinstance(answer, Trajectory):
+                return answer
+        plain = self.solver.together if alone is None else self.solver.alone[alone]
+        return self._among(start, ends, arms, plain)
+
+    def _among(
+        self,
+        start: Floats,
+        ends: Sequence[Floats],
+        arms: Sequence[str],
+        collision: CollisionModel,
     ) -> Trajectory | MotionFailure:
         rng = np.random.default_rng([self._seed, self.requests])
         self.requests += 1
-        collision = checker or self.solver.together
         joints = [np.r_[self.robot.joints_of(arm)] for arm in arms]
         moving = np.concatenate(joints)
         space = self._space(start, moving, collision)

@@ -1,6 +1,7 @@
 """From goals of tools to configurations: several, collision-free, best first, or the reason."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from itertools import islice, product
 
 import numpy as np
@@ -58,12 +59,23 @@ class GoalSolver:
         alone = (self.together,) if len(robot.arms) == 1 else ()
         models = alone or (CollisionModel(robot, scene, arms=(arm,)) for arm in robot.arms)
         self.alone = dict(zip(robot.arms, models, strict=True))
+        self.clear = self._keeping_clear(scene)
         self.set_openings(self._openings_m)
+
+    def _keeping_clear(self, scene: PlanningScene) -> dict[str | None, CollisionModel]:
+        """Return what `together` and `alone` are where rooms of loose things are taken for full."""
+        if not scene.kept_clear:
+            return {}
+        full = replace(scene, boxes=(*scene.boxes, *scene.kept_clear))
+        models: dict[str | None, CollisionModel] = {None: CollisionModel(self.robot, full)}
+        for arm in self.robot.arms:
+            models[arm] = CollisionModel(self.robot, full, arms=(arm,))
+        return models
 
     def set_openings(self, openings_m: Mapping[ArmName, float]) -> None:
         """Take note of how far the grippers are open [m] in all later checks."""
         self._openings_m = dict(openings_m.items())
-        for model in (self.together, *self.alone.values()):
+        for model in (self.together, *self.alone.values(), *self.clear.values()):
             model.set_openings(openings_m)
 
     def reaches(self, arm: str, goal: Goal, present_rad: Floats) -> bool:

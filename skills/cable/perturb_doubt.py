@@ -54,5 +54,7 @@ def _doubt(trace: Trace, crossings: Sequence[Crossing]) -> tuple[float, Points]:
         return least.arc_over, least.position_px
     if trace.end is not TraceEnd.ENDPOINT:
         return 1.0, trace.points_px[-1]
-    closest = min(sites_between(trace, 0.0, 1.0), key=lambda site: site.room_px)
+    closest = min(sites_between(trace, 0.0, 1.0), key=lambda site: site.room_px, default=None)
+    if closest is None:  # it is too short to have a middle
+        return 1.0, trace.points_px[-1]
     return closest.arc, closest.point_px

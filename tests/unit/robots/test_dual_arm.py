@@ -8,6 +8,7 @@ from fake_arms import FakeArms
 
 from robots.dual_arm import PlannedDualArm
 from robots.interfaces import ARMS, DualArm, MotionFailure, TcpGoal
+from robots.motion.collision import CollisionModel
 from robots.motion.planner import PlannerSettings
 from robots.motion.verify import sample
 from robots.placement import HOME_RAD, PlanningScene, StaticBox, table_scene
@@ -97,6 +98,32 @@ def test_the_same_seed_plans_the_same(driver):
 
     for one, other in zip(motion(), motion(), strict=True):
         assert np.array_equal(one, other)
+
+
+@pytest.mark.parametrize("arm", ARMS)
+def test_free_motions_pass_over_what_lies_on_the_table(robot, arm):
+    scene = table_scene()
+    full = PlanningScene(scene.placement, (*scene.boxes, *scene.kept_clear))
+    driver = FakeArms(HOME_RAD)
+    arms, room = PlannedDualArm(driver, seed=0), CollisionModel(robot, full)
+    rng = np.random.default_rng(11)
+    planned = 0
+    for _ in range(30):
+        x, y = rng.uniform([-0.35, -0.15], [0.35, 0.1])
+        plan = arms.plan({arm: goal(x, y, z=0.07, yaw=rng.uniform(0, np.pi))})
+        if isinstance(plan, MotionFailure):
+            continue  # that arm does not reach so far
+        planned += 1
+        assert not any(room.collides(row) for row in sample(plan, 0.01)[1])
+        run(arms, driver, plan)
+    assert planned >= 10
+
+
+def test_hands_among_what_lies_on_the_table_can_move(arms, driver):
+    run(arms, driver, arms.plan({"left": goal(-0.2, 0.0, z=0.008)}))
+    run(arms, driver, arms.plan({"right": goal(0.2, 0.0, z=0.07)}))
+    run(arms, driver, arms.plan({"right": goal(0.2, 0.05, z=0.008)}))
+    run(arms, driver, arms.plan_home())
 
 
 def test_an_obstacle_is_gone_around(robot):
