@@ -1,11 +1,13 @@
 from dataclasses import replace
 
 import numpy as np
+import pytest
 from cell_fakes import ArrivingArms, finished, frame, overhand
 
 from executive.core.work import InlineWorker
-from perception.cable.types import Endpoint
+from perception.cable.types import Endpoint, TraceEnd
 from skills.cable.bring_knot import BringKnot
+from skills.cable.perturb_doubt import PerturbDoubt
 from skills.cable.perturb_endpoint import PerturbEndpoint
 from skills.cable.pull_in import PullIn
 from skills.cable.pulling import towards_middle
@@ -134,3 +136,12 @@ def test_an_arm_goes_down_only_where_it_can_go_on():
     moves = [entry[1]["right"] for entry in arms.log if entry[0] == "move"]
     assert outcome.status == "SUCCESS"
     assert abs(moves[3][1]) < 0.06
+
+
+@pytest.mark.parametrize("end", list(TraceEnd))
+def test_a_trace_too_short_to_hold_is_said_to_be_out_of_reach(end):
+    trace, _, _ = overhand()
+    stub = replace(trace, points_px=trace.points_px[:2], end=end)
+    skill = PerturbDoubt(ArrivingArms(), InlineWorker(), BlindVision(), np.random.default_rng(3))
+    outcome, _ = finished(skill, {"frame": frame(), "trace": stub, "crossings": ()})
+    assert outcome.reason.code == "grasp.unreachable"
