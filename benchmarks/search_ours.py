@@ -53,7 +53,7 @@ class OurSearcher:
         affinity = affinity or affinity_from_scores(
             scene.names, even_rows(len(scene.names)), Origin("even")
         )
-        self.reasoner = SearchReasoner(stock, affinity, reach, camera)
+        self.reasoner = SearchReasoner(stock, affinity, reach, camera, enough)
         if poses is not None:
             self.reasoner.share(scene.target, poses)
         self.belief = self.reasoner.begin(scene.target)

@@ -32,12 +32,23 @@ def shelf_services(
     from perception.shelf.colour_codes import ColourCodeDetector
     from perception.shelf.reasoner import SearchReasoner
 
-    reach = Reach(shape.blade_m, shape.overlap_m, shape.gap_m, shape.suction)
     return {
         "stock": stock,
         "detector": detector or ColourCodeDetector(stock),
-        "search": SearchReasoner(stock, shelf_affinity(stock, affinity), reach, camera),
+        "search": SearchReasoner(stock, shelf_affinity(stock, affinity), reach_of(shape), camera),
     }
+
+
+def reach_of(shape: ToolShape) -> Reach:
+    """Return what planning needs to know of a tool."""
+    return Reach(
+        shape.blade_m,
+        shape.overlap_m,
+        shape.gap_m,
+        shape.suction,
+        lift_kg=shape.lift_kg,
+        lift_nm=shape.lift_nm,
+    )
 
 
 def product_reader(domain: str, *, text: bool) -> ShelfDetector:

@@ -39,6 +39,21 @@ class SeenObject:
     measured: float
 
 
+@dataclass(frozen=True, slots=True)
+class Refusal:
+    """A way in which an object could not be moved from where it stood.
+
+    Attributes:
+        label: The object.
+        box: Where it stood.
+        sign: +1 for a push along x, -1 for one against it, 0 for the cup.
+    """
+
+    label: str
+    box: Box
+    sign: int
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class ShelfBelief:
     """Everything that a search knows; each look and each move gives a new one.
@@ -55,6 +70,7 @@ class ShelfBelief:
         floor: Which cells of the floor are known to be free, shape (nx, ny).
         met: Footprints of what moves have met and nothing seen explains, shape (M, 4).
         been: Where objects were moved from, or could not be moved to, label and box, in order.
+        refusals: What could not be moved how, as far as that still holds.
         picture: The latest look with the belief drawn over it.
         looks: Looks so far.
     """
@@ -70,6 +86,7 @@ class ShelfBelief:
     floor: Bools
     met: Floats
     been: tuple[tuple[str, Box], ...]
+    refusals: tuple[Refusal, ...]
     picture: ColourImage
     looks: int
 

@@ -4,10 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from perception.shelf.beliefs import SeenObject, ShelfBelief
+from perception.shelf.beliefs import Refusal, SeenObject, ShelfBelief
 from perception.shelf.planning.free_floor import CELL_M
 from perception.shelf.planning.room import footprints, overlapping
-from perception.shelf.types import Bools, Floats
+from perception.shelf.types import Bools, Box, Floats
 
 # How likely a look is to be mistaken that rules a place out. What is ruled out comes up again when
 # nothing else is left: places of what is seen are known to some millimetres alone.
@@ -21,6 +21,8 @@ SIDE_M, EXPLAINED_SHARE = 0.001, 0.95
 LOOSE_M = 0.006
 # So far inside of what was met it is then taken to begin.
 INSIDE_M = 0.002
+# What is moved this close to an object changes how that can be pushed.
+NEAR_M = 0.06
 
 
 def meeting(belief: ShelfBelief, met: Floats, *, felt: bool) -> ShelfBelief:
@@ -41,6 +43,25 @@ def meeting(belief: ShelfBelief, met: Floats, *, felt: bool) -> ShelfBelief:
             else:
                 belief = replace(belief, objects=objects)
     return replace(belief, met=np.vstack([belief.met, met]))
+
+
+def still_refused(refusals: tuple[Refusal, ...], before: Box, after: Box) -> tuple[Refusal, ...]:
+    """Return what still cannot be moved after another move.
+
+    That is what the cup has let go of, and what stands where nothing has changed.
+
+    Args:
+        refusals: What could not be moved.
+        before: What was moved, where it stood.
+        after: Where it stands.
+    """
+    margin_m = NEAR_M * np.array([-1.0, -1.0, 1.0, 1.0])
+    changed = footprints([before, after]) + margin_m
+    return tuple(
+        one
+        for one in refusals
+        if not one.sign or not overlapping(footprints([one.box])[0], changed).any()
+    )
 
 
 def rescaled(plausible: Floats) -> Floats:

@@ -8,21 +8,31 @@ import numpy as np
 from perception.camera import CameraModel
 from perception.rgbd import RgbdFrame
 from perception.shelf.affinity import AffinityMatrix
-from perception.shelf.beliefs import OUT_OF_VIEW, SeenObject, ShelfBelief
+from perception.shelf.beliefs import OUT_OF_VIEW, Refusal, SeenObject, ShelfBelief
 from perception.shelf.casting import BoxCaster
 from perception.shelf.coarsening import coarser, coarser_camera
 from perception.shelf.detections import Detections
 from perception.shelf.drawing import drawn_belief
 from perception.shelf.hidden_poses import HiddenPoses, PoseRules
 from perception.shelf.interfaces import object_of
-from perception.shelf.meeting import MISTAKEN, meeting, rescaled, unexplained
+from perception.shelf.meeting import MISTAKEN, meeting, rescaled, still_refused, unexplained
 from perception.shelf.organisation import organisation_of
 from perception.shelf.planning.choosing import best_plan
-from perception.shelf.planning.contacts import contact_of
+from perception.shelf.planning.contacts import contact_of, push_sign
 from perception.shelf.planning.exploring import RULES, THING_M
 from perception.shelf.planning.free_floor import CELL_M, covered_cells, free_cells
-from perception.shelf.planning.looking_ahead import ANYHOW, FIXED, UNSEEN, Situation
+from perception.shelf.planning.lifting import slip_chance
+from perception.shelf.planning.looking_ahead import (
+    ANYHOW,
+    BY_PUSH,
+    FIXED,
+    LEAST_FOUND,
+    UNSEEN,
+    Situation,
+    look_ahead,
+)
 from perception.shelf.planning.moves import Move, Plan, moved_box
+from perception.shelf.planning.outlook import COARSE
 from perception.shelf.planning.room import Reach, footprints
 from perception.shelf.planning.tidying import tidying_move
 from perception.shelf.planning.ways_out import freeing_move
@@ -34,14 +44,20 @@ from perception.shelf.types import Bools, Box, Floats, ShelfView, Sighting, Size
 
 # So many cameras' rays and silhouettes are kept: they cost more than everything else.
 KEPT = 16
+# What comes off the cup with this probability is not asked of it.
+TOO_HEAVY = 0.9
 # How well the place is known of a target that was seen from another side, and only partly.
 GLIMPSE_M = 0.02
 # What is the target with this probability is worth moves that show more of it.
 WORTH_A_MOVE = 0.2
 # After these failures an object is not where it was, and must be looked for.
 GONE = ("push.nothing_there", "suction.lost")
+# After these the cup does not hold it: it is too heavy, or its face is not flat.
+UNHELD = ("suction.missed", "suction.lost")
 # After this one something stands beside it.
 BLOCKED = "push.blocked"
+# After these it cannot be pushed that way from where it stands.
+STUCK = (BLOCKED, "push.no_room_for_blade")
 
 
 class SearchReasoner:
@@ -51,7 +67,12 @@ class SearchReasoner:
     """
 
     def __init__(
-        self, stock: Stock, affinity: AffinityMatrix, reach: Reach, camera: CameraModel
+        self,
+        stock: Stock,
+        affinity: AffinityMatrix,
+        reach: Reach,
+        camera: CameraModel,
+        enough: float = 0.0,
     ) -> None:
         """Take what stays the same.
 
@@ -60,9 +81,10 @@ class SearchReasoner:
             affinity: Affinities between them.
             reach: What the tool needs.
             camera: The one at the viewpoint from which the search looks between moves.
+            enough: The share of the target that is to show; by default it is enough to see it.
         """
         self._stock, self._affinity, self._reach = stock, affinity, reach
-        self._camera = coarser_camera(camera)
+        self._camera, self._enough = coarser_camera(camera), enough
         self._casters: OrderedDict[bytes, BoxCaster] = OrderedDict()
         self._poses: OrderedDict[tuple[bytes, str], HiddenPoses] = OrderedDict()
 
@@ -95,6 +117,7 @@ class SearchReasoner:
             floor=np.zeros(cells, dtype=bool),
             met=np.zeros((0, 4)),
             been=(),
+            refusals=(),
             picture=np.zeros((self._camera.height_px, self._camera.width_px, 3), dtype=np.uint8),
             looks=0,
         )
@@ -131,7 +154,7 @@ class SearchReasoner:
         """See `ShelfReasoning`."""
         # Something that was taken for the target may be something else that hides it.
         situation = self._situation(self.removed(belief, belief.target))
-        return self._nearer_look(belief) or best_plan(situation)
+        return self._nearer_look(belief) or best_plan(situation, enough=self._enough)
 
     def clear_way(self, belief: ShelfBelief, label: str) -> Move | None:
         """See `ShelfReasoning`."""
@@ -147,7 +170,12 @@ class SearchReasoner:
         if before is None:
             return meeting(belief, met, felt=True)
         objects = tuple(_stood(one, box) if one.label == label else one for one in belief.objects)
-        moved = replace(belief, objects=objects, been=(*belief.been, (label, before.box)))
+        moved = replace(
+            belief,
+            objects=objects,
+            been=(*belief.been, (label, before.box)),
+            refusals=still_refused(belief.refusals, before.box, box),
+        )
         if before.box.y_m == box.y_m:
             moved = self._swept(moved, before.box, box)
         return meeting(moved, met, felt=True)
@@ -157,10 +185,15 @@ class SearchReasoner:
         thing = object_of(belief, move.label)
         if thing is None:
             return belief
+        if failure in UNHELD + STUCK:
+            refusal = Refusal(move.label, thing.box, push_sign(move))
+            belief = replace(belief, refusals=(*belief.refusals, refusal))
         if failure in GONE:
             return self.removed(belief, move.label)
         tried = (move.label, moved_box(move, thing.box))
         belief = replace(belief, been=(*belief.been, tried))
+        if failure in UNHELD:
+            return belief
         met = contact_of(move, thing.box, failure)[None]
         return meeting(belief, met, felt=failure == BLOCKED)
 
@@ -173,10 +206,27 @@ class SearchReasoner:
         found = belief.found
         if found is None or found.certainty < WORTH_A_MOVE:
             return None
+        plan = self._uncovering(belief, found)
+        if plan is not None:
+            return plan
         move = self.clear_way(belief, belief.target)
         if move is None:
             return None
         return Plan((move,), found.certainty, 1.0 / found.certainty, found.certainty)
+
+    def _uncovering(self, belief: ShelfBelief, found: SeenObject) -> Plan | None:
+        """Return what shows enough of a thing that is seen; None where nothing short does."""
+        others = self._situation(self.removed(belief, belief.target))
+        place_m = np.array([[found.box.x_m, found.box.y_m]])
+        situation = replace(
+            others,
+            met=np.vstack([others.met, footprints([found.box])]),
+            target_m=found.box.size_m,
+            places_m=place_m,
+            weights=np.ones(1),
+        )
+        plan = look_ahead(situation, grain=COARSE.showing(self._enough))
+        return plan if plan is not None and plan.finds > LEAST_FOUND else None
 
     def _swept(self, belief: ShelfBelief, start: Box, end: Box) -> ShelfBelief:
         """Return what is believed after a push: what was pushed through holds nothing."""
@@ -199,7 +249,10 @@ class SearchReasoner:
             labels=tuple(one.label for one in belief.objects),
             boxes=tuple(one.box for one in belief.objects),
             movable=np.array(
-                [FIXED if one.label in fixed else self._movable(one) for one in belief.objects],
+                [
+                    FIXED if one.label in fixed else self._movable(belief, one)
+                    for one in belief.objects
+                ],
                 dtype=np.int64,
             ),
             met=belief.met,
@@ -210,10 +263,15 @@ class SearchReasoner:
             weights=belief.weights,
             been=belief.been,
             unseen_m=self._things(self._camera).places_m[belief.unseen],
+            barred=tuple((one.label, one.sign) for one in belief.refusals if one.sign),
         )
 
-    def _movable(self, one: SeenObject) -> int:
-        return UNSEEN if self._reach.by_sight and one.number == OUT_OF_VIEW else ANYHOW
+    def _movable(self, belief: ShelfBelief, one: SeenObject) -> int:
+        if self._reach.by_sight and one.number == OUT_OF_VIEW:
+            return UNSEEN
+        unheld = any(each.label == one.label and not each.sign for each in belief.refusals)
+        heavy = slip_chance(one.box.size_m, self._reach) > TOO_HEAVY
+        return BY_PUSH if unheld or heavy else ANYHOW
 
     def _weighted(self, belief: ShelfBelief, possible: Bools) -> ShelfBelief:
         """Weigh the poses that are possible now by semantics, as far as the shelf is in order."""

@@ -34,6 +34,9 @@ class MoveFailure(StrEnum):
     NO_PLACE = "suction.no_place"
     NO_BLADE = "push.no_room_for_blade"
     NO_ROOM = "push.blocked"
+    NOTHING_THERE = "push.nothing_there"
+    MISSED = "suction.missed"
+    LOST = "suction.lost"
 
 
 @dataclass(frozen=True, slots=True)

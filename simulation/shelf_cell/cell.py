@@ -21,10 +21,11 @@ from simulation.shelf.stocking import stock_of
 from simulation.shelf.taxonomy import shipped_domain
 from simulation.shelf_cell.boxes import Matter, weighed
 from simulation.shelf_cell.camera import ToolCamera
-from simulation.shelf_cell.config import ShelfCellConfig, ShelfScenario
+from simulation.shelf_cell.config import ShelfCellConfig, ShelfScenario, ToolConfig
 from simulation.shelf_cell.oracle import OracleDetector
 from simulation.shelf_cell.seeing import visible_shares
 from simulation.shelf_cell.streams import joint_states_json, scene_json
+from simulation.shelf_cell.suction import Vacuum, lift_of
 from simulation.shelf_cell.truth import ShelfTruth, shelf_truth
 from simulation.shelf_cell.world import ShelfWorld
 from simulation.streams import Stream
@@ -86,7 +87,7 @@ class ShelfCell:
         self.tool = kinova_shelf_tool(
             self.driver,
             size,
-            ToolShape(blade_m=settings.tool.lane_m, overlap_m=_OVERLAP_M, gap_m=0.0),
+            _shape(settings.tool),
             seed=seed,
             viewpoints={
                 name: camera.T_world_camera
@@ -195,6 +196,11 @@ def _scene(
 ) -> Scene:
     rules = SceneRules(wanted.count, wanted.organisation, wanted.scale)
     return draw_scene(shipped_domain(wanted.domain), rules, rng, shelf, camera)
+
+
+def _shape(tool: ToolConfig) -> ToolShape:
+    lift_kg, lift_nm = lift_of(Vacuum(tool.pressure_pa, tool.friction))
+    return ToolShape(tool.lane_m, _OVERLAP_M, gap_m=0.0, lift_kg=lift_kg, lift_nm=lift_nm)
 
 
 def _size(shelf: Shelf) -> place.ShelfSize:

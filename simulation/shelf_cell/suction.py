@@ -24,6 +24,10 @@ _BEHIND_M, _AHEAD_M, _LIP_GIVES_M = 0.006, 0.0025, 0.0015
 _LEAN_COSINE = np.cos(np.radians(10.0))
 # A load that lasts for no longer than this is a jolt, which lips take [s].
 _JOLT_S = 0.015
+# A safety factor of two and a half: what is lifted by a face that stands rubs on the floor, comes
+# off it askew, and is set in motion.
+USED = 0.4
+GRAVITY_M_S2 = 9.81
 
 
 @dataclass(frozen=True, slots=True)
@@ -128,6 +132,14 @@ class Cups:
         assert self._constraint is not None
         force_n, torque_nm = self._physics.load(self._constraint)
         return overloaded(force_n, torque_nm, self._sealed, self._vacuum)
+
+
+def lift_of(vacuum: Vacuum) -> tuple[float, float]:
+    """Return what all cups of the tool take by their data: a weight [kg] and a moment [N m]."""
+    one_n = USED * vacuum.pressure_pa * np.pi * CUP_RADIUS_M**2
+    levers_m = np.array(CUPS_M) - min(CUPS_M) + CUP_RADIUS_M
+    weight_kg = vacuum.friction * one_n * len(CUPS_M) / GRAVITY_M_S2
+    return float(weight_kg), float(one_n * levers_m.sum())
 
 
 def overloaded(force_n: Floats, torque_nm: Floats, cups_m: Floats, vacuum: Vacuum) -> bool:

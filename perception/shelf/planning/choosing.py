@@ -9,7 +9,7 @@ from perception.shelf.planning.contacts import contact_beside
 from perception.shelf.planning.exploring import unseen_things
 from perception.shelf.planning.looking_ahead import LEAST_FOUND, Depth, Situation, look_ahead
 from perception.shelf.planning.moves import Plan
-from perception.shelf.planning.outlook import FINE
+from perception.shelf.planning.outlook import COARSE, FINE
 from perception.shelf.planning.proofs import hopeless
 from perception.shelf.types import Bools
 
@@ -17,20 +17,22 @@ from perception.shelf.types import Bools
 TOUCHING_M = 0.004
 
 
-def best_plan(situation: Situation, depth: Depth | None = None) -> Plan | None:
+def best_plan(situation: Situation, depth: Depth | None = None, enough: float = 0.0) -> Plan | None:
     """Return what to do; None when nothing can be moved, or it is proved that nothing helps.
 
-    Plans that may find the target come first. Where there is none, slits are worth a try, then
-    what shows something that has not been seen; then whatever makes room.
+    Plans that may show enough of the target come first. Where there is none, a glimpse of it is
+    worth a try, through a slit, too; then what shows something that has not been seen; then
+    whatever makes room.
 
     Args:
         situation: What is known.
         depth: How far to look; None for the defaults.
+        enough: The share of the target that is to show; less than can be told apart is a glimpse.
     """
-    rough = look_ahead(situation, depth)
+    rough = look_ahead(situation, depth, COARSE.showing(enough))
     if rough is not None and rough.finds > LEAST_FOUND:
         return rough
-    for plan in _other_plans(situation, depth):
+    for plan in _other_plans(situation, depth, enough):
         if plan is not None and plan.finds > LEAST_FOUND:
             return plan
     if not situation.reach.suction and hopeless(situation):
@@ -38,7 +40,9 @@ def best_plan(situation: Situation, depth: Depth | None = None) -> Plan | None:
     return rough or look_ahead(forgetful(situation), depth)
 
 
-def _other_plans(situation: Situation, depth: Depth | None) -> Iterator[Plan | None]:
+def _other_plans(situation: Situation, depth: Depth | None, enough: float) -> Iterator[Plan | None]:
+    if enough > COARSE.shown:
+        yield look_ahead(situation, depth)
     yield look_ahead(situation, depth, FINE)
     unseen = unseen_things(situation)
     if unseen is not None:
@@ -50,7 +54,7 @@ def _other_plans(situation: Situation, depth: Depth | None) -> Iterator[Plan | N
 
 def forgetful(situation: Situation) -> Situation:
     """Return a situation without what was tried, but for what is still blocked as it was."""
-    return replace(situation, been=(), met=situation.met[_touching(situation)])
+    return replace(situation, been=(), barred=(), met=situation.met[_touching(situation)])
 
 
 def _touching(situation: Situation) -> Bools:

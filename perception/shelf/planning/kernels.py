@@ -270,10 +270,30 @@ def _effort(boxes: Floats, movable: Ints, met: Floats, width_m: float, reach: Fl
 
 
 @kernel
+def _least_effort(costs: Floats, faces: Floats, count: int, enough: float) -> float:
+    """Return the least effort for which columns show that are so much of a target together."""
+    effort, left = 0.0, enough
+    for _ in range(count):
+        least = np.inf
+        for entry in range(count):
+            if faces[entry] > 0.0:
+                least = min(least, costs[entry])
+        for entry in range(count):
+            if faces[entry] > 0.0 and costs[entry] <= least:
+                left -= faces[entry]
+                faces[entry] = 0.0
+        effort = least
+        if left <= 0.0:
+            break
+    return effort
+
+
+@kernel
 def _assess(
     near: Floats,
     rise: Floats,
     effort: Floats,
+    eye: Floats,
     column: Ints,
     depth: Floats,
     top: Floats,
@@ -284,14 +304,17 @@ def _assess(
 ) -> tuple[float, float]:
     """Return the weight of the poses that show, and the effort that it takes to see the others."""
     shown = behind = 0.0
+    costs, faces = np.empty(near.shape[1]), np.empty(near.shape[1])
     for cell in range(len(weights)):
         seen[cell] = 0
         if weights[cell] <= 0.0:
             continue
-        visible, least = 0.0, 1e9
+        visible, count = 0.0, 0
         for entry in range(start[cell], start[cell + 1]):
             at = column[entry]
-            highest, cost = -np.inf, 0.0
+            # Where nothing is before it, a target shows down to the floor it stands on.
+            foot = -eye[2] / depth[entry]
+            highest, cost = foot, 0.0
             for index in range(len(near)):
                 if near[index, at] < depth[entry]:
                     if rise[index, at] > highest:
@@ -300,11 +323,13 @@ def _assess(
                         cost += effort[index]
             if highest < top[entry]:
                 visible += top[entry] - highest
-            least = min(least, cost)
+            costs[count], faces[count] = cost, top[entry] - foot
+            count += 1
         if visible >= shows[cell]:
             seen[cell] = 1
             shown += weights[cell]
         else:
+            least = _least_effort(costs, faces, count, shows[cell])
             behind += weights[cell] * max(least, MOVES_WELL)
     return shown, behind
 
@@ -345,7 +370,9 @@ def assess(
     near, rise = survey(boxes, slopes, eye)
     effort = _effort(boxes, movable, met, width_m, reach)
     seen = np.zeros(len(weights), np.int64)
-    shown, behind = _assess(near, rise, effort, column, depth, top, start, shows, weights, seen)
+    shown, behind = _assess(
+        near, rise, effort, eye, column, depth, top, start, shows, weights, seen
+    )
     return seen, shown, behind
 
 
@@ -381,7 +408,7 @@ def consider(
         _survey_one(after[index], slopes, eye, near[index], rise[index])
         effort = _effort(after, movable, met, width_m, reach)
         shown[number], behind[number] = _assess(
-            near, rise, effort, column, depth, top, start, shows, weights, seen
+            near, rise, effort, eye, column, depth, top, start, shows, weights, seen
         )
         after[index] = own
         _survey_one(own, slopes, eye, near[index], rise[index])

@@ -13,6 +13,7 @@ import numpy as np
 
 from perception.camera import CameraModel
 from perception.shelf.planning.kernels import Ints, assess, consider, moves_from
+from perception.shelf.planning.lifting import tries
 from perception.shelf.planning.moves import Move, Place, Plan, Push
 from perception.shelf.planning.outlook import COARSE, Grain, outlook, restricted
 from perception.shelf.planning.partings import partings, pushes_of
@@ -76,6 +77,8 @@ class Situation:
         weights: Probability of each place, shape (K,).
         been: Where objects were moved from, or could not be moved to: none is brought there.
         unseen_m: Where a small thing may stand that nobody has seen, shape (U, 2).
+        barred: Objects that cannot be pushed from where they stand, and to which side: +1 for
+            along x, -1 for against it.
     """
 
     shelf: Shelf
@@ -92,6 +95,7 @@ class Situation:
     weights: Floats
     been: Sequence[tuple[str, Box]] = ()
     unseen_m: Floats = field(default_factory=lambda: np.zeros((0, 2)))
+    barred: Sequence[tuple[str, int]] = ()
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -167,12 +171,42 @@ def _named(label: str, own: Floats, by_cup: bool, corner: Floats) -> Move:
     return Place(label, float(middle[0]), float(middle[1]))
 
 
+def open_moves(situation: Situation, boxes: Floats, moves: tuple[Ints, Ints, Floats]) -> Bools:
+    """Say which moves are not known to fail, and bring nothing back to where it has been.
+
+    Args:
+        situation: What is known.
+        boxes: Where objects stand before the moves, shape (B, 5).
+        moves: As `kernels.moves_from` has them.
+
+    Returns:
+        One for each move, shape (M,).
+    """
+    moved, by_cup, corners = moves
+    fine = np.ones(len(moved), dtype=bool)
+    numbers = {label: number for number, label in enumerate(situation.labels)}
+    for label, box in situation.been:
+        if label in numbers:
+            back = np.abs(corners - np.array(box.low_m[:2])).max(axis=1) < BACK_M
+            fine &= ~(back & (moved == numbers[label]))
+    for label, sign in situation.barred:
+        if label in numbers:
+            number = numbers[label]
+            pushes = (moved == number) & (by_cup == 0)
+            stays = abs(boxes[number, 0] - situation.boxes[number].low_m[0]) < BACK_M
+            fine &= ~(pushes & (sign * (corners[:, 0] - boxes[number, 0]) > 0.0) & stays)
+    return fine
+
+
 class _Search:
     """One decision."""
 
     def __init__(self, situation: Situation, depth: Depth, grain: Grain) -> None:
         self._situation, self._depth, self._grain = situation, depth, grain
         self._inputs = kernel_inputs(situation, depth)
+        self._again = np.array(
+            [tries(box.size_m, situation.reach) - 1.0 for box in situation.boxes]
+        )
         poses, weights = _blocks(situation, depth.block_m)
         places_m = situation.places_m[poses]
         self._view = outlook(situation.camera, places_m, situation.target_m, grain)
@@ -239,7 +273,10 @@ class _Search:
         first = pushes[:1]
         moved = np.array([index for index, _ in first], dtype=np.int64)
         corners = np.array([corner for _, corner in first]).reshape(-1, 2)
-        return len(first) == 1 and bool(self._fresh(moved, corners)[0])
+        by_cup, boxes = np.zeros(len(moved), dtype=np.int64), self._inputs.boxes
+        return len(first) == 1 and bool(
+            open_moves(self._situation, boxes, (moved, by_cup, corners))[0]
+        )
 
     def _pushed(self, branch: _Branch, pushes: Sequence[tuple[int, Floats]]) -> _Branch | None:
         """Return a branch with pushes one after the other; None when they show nothing."""
@@ -273,7 +310,7 @@ class _Search:
             branch.boxes, situation.movable, inputs.met, inputs.shelf_m, inputs.reach,
             inputs.steps_m, inputs.floor, situation.cell_m,
         )  # fmt: skip
-        fresh = self._fresh(moved, corners)
+        fresh = open_moves(situation, branch.boxes, (moved, by_cup, corners))
         moved, by_cup, corners = moved[fresh], by_cup[fresh], corners[fresh]
         shown, behind = consider(
             branch.boxes, situation.movable, inputs.met, inputs.shelf_m[0], inputs.reach,
@@ -281,7 +318,8 @@ class _Search:
             branch.weights, moved, corners,
         )  # fmt: skip
         far_m = np.abs(corners - branch.boxes[moved, :2]).sum(axis=1)
-        costs = branch.spent + self._depth.tail * behind + HASTE_1_M * far_m
+        again = branch.unfound * np.where(by_cup == 1, self._again[moved], 0.0)
+        costs = branch.spent + again + self._depth.tail * behind + HASTE_1_M * far_m
         # A shortlist is enough: siblings compete for the same beam.
         order = np.argsort(costs, kind="stable")[: SHORTLIST * self._depth.beam]
         return [
@@ -290,12 +328,18 @@ class _Search:
                 (int(moved[pick]), bool(by_cup[pick]), corners[pick]),
                 float(shown[pick]),
                 float(costs[pick]),
+                float(again[pick]),
             )
             for pick in order.tolist()
         ]
 
     def _child(
-        self, branch: _Branch, move: tuple[int, bool, Floats], shown: float, cost: float
+        self,
+        branch: _Branch,
+        move: tuple[int, bool, Floats],
+        shown: float,
+        cost: float,
+        again: float = 0.0,
     ) -> _Branch:
         index, by_cup, corner = move
         boxes = branch.boxes.copy()
@@ -304,7 +348,7 @@ class _Search:
         unfound = max(branch.unfound - shown, 0.0)
         named = _named(self._situation.labels[index], branch.boxes[index], by_cup, corner)
         return _Branch(
-            boxes, branch.weights, unfound, branch.spent + unfound, cost,
+            boxes, branch.weights, unfound, branch.spent + again + unfound, cost,
             (*branch.moves, named), (*branch.shows, shown),
         )  # fmt: skip
 
@@ -321,16 +365,6 @@ class _Search:
             weights,
         )  # fmt: skip
         return answer
-
-    def _fresh(self, moved: Ints, corners: Floats) -> Bools:
-        """Say which moves do not bring an object back to where it has been."""
-        fresh = np.ones(len(moved), dtype=bool)
-        for label, box in self._situation.been:
-            if label in self._situation.labels:
-                index = self._situation.labels.index(label)
-                back = np.abs(corners - np.array(box.low_m[:2])).max(axis=1) < BACK_M
-                fresh &= ~(back & (moved == index))
-        return fresh
 
 
 def _plan(branch: _Branch | None) -> Plan | None:

@@ -1,12 +1,15 @@
 """Where a hidden target would show: its poses as columns of an image, for looking ahead."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from perception.camera import CameraModel
 from perception.shelf.planning.kernels import Ints, survey
 from perception.shelf.types import Floats, Size
+
+# So much more of a target is to show than is asked for: places are known to some millimetres.
+MARGIN = 0.03
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,6 +29,10 @@ class Grain:
     shown: float = 0.04
     clear_m: float = 0.008
     sight: float = 0.8
+
+    def showing(self, share: float) -> "Grain":
+        """Return the same for a target of which at least so much has to show."""
+        return replace(self, shown=max(self.shown, share + MARGIN))
 
 
 # Finer columns cost time and change no decision where there is room.

@@ -30,6 +30,8 @@ class Reach:
         suction: Whether there is a cup, so that objects can be taken out and put elsewhere.
         by_sight: Whether only what the latest look shows can be moved (thesis, section 5.2); arms
             that go by touch can move what they know of.
+        lift_kg: What the cup lifts, when that is close to its lips.
+        lift_nm: The greatest moment about its lips that it takes, of what hangs out before them.
     """
 
     blade_m: float = 0.01
@@ -37,6 +39,8 @@ class Reach:
     gap_m: float = 0.002
     suction: bool = True
     by_sight: bool = False
+    lift_kg: float = float("inf")
+    lift_nm: float = float("inf")
 
 
 def footprints(boxes: Sequence[Box]) -> Floats:

@@ -9,13 +9,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from perception.shelf.planning.kernels import Ints, moves_from
+from perception.shelf.planning.kernels import moves_from
 from perception.shelf.planning.looking_ahead import (
-    BACK_M,
     KernelInputs,
     Situation,
     kernel_inputs,
     named_move,
+    open_moves,
 )
 from perception.shelf.planning.moves import Move
 from perception.shelf.planning.room import footprints, front_lane, overlapping
@@ -89,7 +89,8 @@ def _children(
         before.boxes, situation.movable, inputs.met, inputs.shelf_m, inputs.reach,
         inputs.steps_m, inputs.floor, situation.cell_m,
     )  # fmt: skip
-    helps = (blocked | _around(rows, blocked))[moved] & ~_brings_back(situation, moved, corners)
+    helps = (blocked | _around(rows, blocked))[moved]
+    helps &= open_moves(situation, before.boxes, (moved, by_cup, corners))
     for pick in np.flatnonzero(helps):
         index, corner = int(moved[pick]), corners[pick]
         boxes = before.boxes.copy()
@@ -132,14 +133,3 @@ def _around(rows: Floats, blocked: Bools) -> Bools:
         width_m = row[2] - row[0]
         around |= overlapping(np.array([row[0] - width_m, -1.0, row[2] + width_m, row[3]]), rows)
     return around
-
-
-def _brings_back(situation: Situation, moved: Ints, corners: Floats) -> Bools:
-    """Say which moves bring an object back to where it has been, shape (M,)."""
-    back = np.zeros(len(moved), dtype=bool)
-    for label, box in situation.been:
-        if label in situation.labels:
-            there = footprints([box])[0, :2]
-            near = np.abs(corners - there).max(axis=1) < BACK_M
-            back |= (moved == situation.labels.index(label)) & near
-    return back

@@ -7,6 +7,7 @@ import pytest
 
 from perception.shelf.casting import BoxCaster
 from perception.shelf.planning.kernels import assess, moves_from
+from perception.shelf.planning.lifting import slip_chance, tries
 from perception.shelf.planning.looking_ahead import (
     ANYHOW,
     FIXED,
@@ -14,8 +15,8 @@ from perception.shelf.planning.looking_ahead import (
     kernel_inputs,
     look_ahead,
 )
-from perception.shelf.planning.moves import Place, Push
-from perception.shelf.planning.outlook import Grain, outlook
+from perception.shelf.planning.moves import Place, Push, moved_box
+from perception.shelf.planning.outlook import COARSE, Grain, outlook
 from perception.shelf.planning.room import Reach, blade_fits, footprints, push_room_m, way_out
 from perception.shelf.planning.ways_out import freeing_move
 from perception.shelf.rendering import ShelfRenderer
@@ -178,3 +179,45 @@ def test_corners_and_footprints_agree():
     boxes, _ = drawn(1)
     low_m, high_m = corners(boxes)
     assert np.allclose(footprints(boxes), np.hstack([low_m[:, :2], high_m[:, :2]]))
+
+
+@pytest.mark.parametrize("enough", [0.1, 0.5, 0.9])
+def test_as_much_of_the_target_shows_as_is_asked_for(enough):
+    front, target = Box(0.4, 0.1, WIDE), Box(0.4, 0.25, SMALL)
+    plan = look_ahead(
+        situation([front], target, Reach(suction=False)), grain=COARSE.showing(enough)
+    )
+    boxes = [moved_box(plan.moves[0], front), target]
+    shares = ShelfRenderer(BoxCaster(CAMERA), SHELF).visible_shares(boxes)
+    assert shares[1] >= enough
+
+
+def test_it_takes_no_longer_push_to_show_less():
+    front, target = Box(0.4, 0.1, WIDE), Box(0.4, 0.25, SMALL)
+    made = situation([front], target, Reach(suction=False))
+    plans = [look_ahead(made, grain=COARSE.showing(enough)) for enough in (0.1, 0.4, 0.8)]
+    shifts = [abs(plan.moves[0].shift_m) for plan in plans]
+    assert shifts == sorted(shifts)
+    assert shifts[0] < shifts[-1]
+
+
+def test_what_cannot_be_pushed_that_way_is_pushed_the_other_way():
+    front, target = Box(0.3, 0.1, WIDE), Box(0.3, 0.25, SMALL)
+    made = situation([front], target, Reach(suction=False))
+    shift_m = look_ahead(made).moves[0].shift_m
+    sign = 1 if shift_m > 0.0 else -1
+    other = look_ahead(replace(made, barred=(("box 0", sign),)))
+    assert other.moves[0].shift_m * sign < 0.0
+    assert look_ahead(replace(made, barred=(("box 0", 1), ("box 0", -1)))) is None
+
+
+def test_heavy_things_slip_and_are_pushed_where_that_is_as_good():
+    cup = Reach(lift_kg=0.6, lift_nm=0.4)
+    chances = [slip_chance((side_m, side_m, side_m), cup) for side_m in (0.05, 0.1, 0.12, 0.2)]
+    assert chances == sorted(chances)
+    assert chances[0] == 0.0
+    assert chances[-1] == 1.0
+    assert tries((0.05, 0.05, 0.05), cup) == 1.0
+    front, target = Box(0.4, 0.06, (0.12, 0.12, 0.16)), Box(0.4, 0.25, SMALL)
+    weak = look_ahead(situation([front], target, Reach(lift_kg=0.6, lift_nm=0.4)))
+    assert isinstance(weak.moves[0], Push)

@@ -212,6 +212,24 @@ def test_a_move_that_failed_is_not_chosen_again(search, looked):
     assert object_of(search.refused(looked, first, "suction.lost"), first.label) is None
 
 
+def test_what_the_cup_has_let_go_of_is_pushed(search, looked):
+    missed = search.refused(looked, Place("tea", 0.15, 0.1), "suction.missed")
+    for _ in range(4):
+        move = search.choose(missed).moves[0]
+        assert isinstance(move, Push) or move.label != "tea"
+        missed = search.refused(missed, move, "motion.no_path")
+
+
+def test_a_push_without_room_is_tried_again_when_a_neighbour_has_moved(search, looked):
+    refused = search.refused(looked, Push("tea", 0.1), "push.no_room_for_blade")
+    assert [(one.label, one.sign) for one in refused.refusals] == [("tea", 1)]
+    rice = looked.boxes["rice"]
+    far = search.moved(refused, "rice", rice.at(rice.x_m + 0.02, rice.y_m), np.zeros((0, 4)))
+    assert far.refusals == refused.refusals
+    near = search.moved(refused, "rice", rice.at(0.56, rice.y_m), np.zeros((0, 4)))
+    assert not near.refusals
+
+
 def test_order_is_restored_by_the_way_back(search, looked):
     tea = object_of(looked, "tea")
     away = search.moved(looked, "tea", tea.box.at(0.2, tea.box.y_m), np.zeros((0, 4)))
