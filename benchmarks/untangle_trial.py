@@ -35,6 +35,8 @@ try:
 finally:
     print(f"\\n{time.process_time()}", file=sys.stderr)
 """
+# How long the cables of tiers and of single knots are, which an engineer knows [m].
+LENGTHS_M = {"tier": 3.0, "knot": 1.5}
 # How many knots the cables of a sort have; one with a knot by name has one.
 KNOTS = {"C3": 2}
 # Skills by what they take their time for.
@@ -69,7 +71,7 @@ class Wanted(BaseModel):
     def settings(self) -> list[str]:
         """Return `--set` options."""
         sort = "tier" if self.cable.startswith("C") else "knot"
-        found = [f"cable.{sort}={self.cable}", *self.options]
+        found = [f"cable.{sort}={self.cable}", f"length_m={LENGTHS_M[sort]}", *self.options]
         for key in ("policy", "vision"):
             value = getattr(self, key)
             found += [f"{key}={value}"] if value != "default" else []

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from perception.cable.types import (
     CableScene,
+    Coverage,
     Crossing,
     Endpoint,
     Knot,
@@ -113,8 +114,8 @@ class CableVision(Protocol):
         """Follow one cable; see `Tracer.trace`."""
         ...
 
-    def explained_share(self, image: GreyImage, trace: Trace) -> float:
-        """Return the share of cable pixels in view that a trace accounts for, in [0, 1]."""
+    def coverage(self, image: GreyImage, trace: Trace) -> Coverage:
+        """Return how much of the cable in view a trace accounts for."""
         ...
 
     def crossings(self, image: GreyImage, traces: Sequence[Trace]) -> tuple[Crossing, ...]:

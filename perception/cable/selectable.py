@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from executive.core.errors import InputError
 from executive.core.registry import closest
 from perception.cable.interfaces import CableVision
-from perception.cable.types import CableScene, Crossing, Endpoint, Knot, Points, Trace
+from perception.cable.types import CableScene, Coverage, Crossing, Endpoint, Knot, Points, Trace
 from perception.camera import GreyImage
 
 
@@ -72,9 +72,9 @@ class SelectableVision:
         """Follow one cable; see `Tracer.trace`."""
         return self._now.trace(image, start_px, endpoints)
 
-    def explained_share(self, image: GreyImage, trace: Trace) -> float:
-        """Return the share of cable pixels in view that a trace accounts for, in [0, 1]."""
-        return self._now.explained_share(image, trace)
+    def coverage(self, image: GreyImage, trace: Trace) -> Coverage:
+        """Return how much of the cable in view a trace accounts for."""
+        return self._now.coverage(image, trace)
 
     def crossings(self, image: GreyImage, traces: Sequence[Trace]) -> tuple[Crossing, ...]:
         """Classify all crossings; see `CrossingClassifier.classify`."""

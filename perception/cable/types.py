@@ -81,6 +81,19 @@ class Trace:
     probability: float
 
 
+@dataclass(frozen=True, slots=True)
+class Coverage:
+    """How much of the cable in view a trace accounts for.
+
+    Attributes:
+        share: Share of the cable's pixels that lie along it, in [0, 1]; 1 where there are none.
+        left_px: Pixels of the largest piece of cable away from it.
+    """
+
+    share: float
+    left_px: int
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Crossing:
     """One place where a strand lies over another.

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from perception.cable.belief import any_knotted, knot_types, knotted_probability, reading_of
-from perception.cable.coverage import explained_share
+from perception.cable.coverage import coverage_of
 from perception.cable.crowding import doubt_shared
 from perception.cable.eyes import LEAST_END, EndJudge
 from perception.cable.grasp_points import GraspConfig
@@ -28,6 +28,7 @@ from perception.cable.telling import telling_question
 from perception.cable.tracers.analytic import AnalyticTracer
 from perception.cable.types import (
     CableScene,
+    Coverage,
     Crossing,
     Endpoint,
     Knot,
@@ -122,9 +123,9 @@ class GreyImageVision:
         """Follow one cable; see `Tracer.trace`."""
         return next(iter(self._ways(image, start_px, endpoints)), None)
 
-    def explained_share(self, image: GreyImage, trace: Trace) -> float:
-        """Return the share of cable pixels in view that a trace accounts for, in [0, 1]."""
-        return explained_share(self.cable_pixels(image), trace.points_px)
+    def coverage(self, image: GreyImage, trace: Trace) -> Coverage:
+        """Return how much of the cable in view a trace accounts for."""
+        return coverage_of(self.cable_pixels(image), trace.points_px)
 
     def crossings(self, image: GreyImage, traces: Sequence[Trace]) -> tuple[Crossing, ...]:
         """Classify all crossings; see `CrossingClassifier.classify`."""

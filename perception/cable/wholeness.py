@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from perception.cable.coverage import explained_share
+from perception.cable.coverage import coverage_of
 from perception.cable.observation import Observation
 from perception.cable.polyline import pixels_of
 from perception.cable.types import Points
@@ -39,7 +39,7 @@ def wholeness(observation: Observation, path_px: Points) -> float:
     if len(plugs) not in (1, 2):
         cable = _pieces_along(cable, path_px)
     low, high = SHARES
-    share = explained_share(cable, np.concatenate([path_px, *plugs]))
+    share = coverage_of(cable, np.concatenate([path_px, *plugs])).share
     explained = float(np.clip((share - low) / (high - low), 0.0, 1.0))
     return explained * _no_hook(cable, path_px, plugs, observation.mask.width_px)
 

@@ -14,6 +14,7 @@ import numpy as np
 from perception.cable.polyline import arc_lengths, point_at
 from perception.cable.topology.curve import self_intersections
 from robots.interfaces import Floats
+from robots.placement import TABLE_SIZE_M
 from skills.cable.knot_sites import REACH_X_M, REACH_Y_M
 
 # Where a caging and a pinching hand go, on the table, shape (2,) each.
@@ -30,9 +31,13 @@ MIDDLES_X_M = (-0.2, -0.1, 0.0, 0.1, 0.2)
 MIDDLES_Y_M = (-0.14, -0.06, 0.02, 0.10, 0.16)
 # Arms that are to pass each other collide: hands keep so far apart along the table.
 ABREAST_M = 0.10
+# What is out there falls off the table, or is not seen well.
+RIM_M = 0.03
 # In crossings: a metre of tail that is left to draw, that any is left, and a step of cable close
 # beside another.
 TAIL_COST, LEFT_COST, BESIDE_COST = 20.0, 4.0, 0.15
+# In crossings: a step of cable that would come to lie off the table.
+OFF_COST = 1.0
 # A tail is out when so much more has been drawn: connectors, and cable that was not quite straight.
 MARGIN_M = 0.06
 BESIDE_M = 0.02
@@ -107,11 +112,18 @@ def crossings_of(line_m: Floats) -> int:
 
 
 def tangle_cost(line_m: Floats) -> float:
-    """Return how hard a line is to understand: its crossings, and what lies close beside itself."""
+    """Return how hard a line is to understand: crossings, what lies beside it, or off the table."""
     crossings = crossings_of(line_m)
     gaps_m = np.linalg.norm(line_m[:, None] - line_m[None], axis=2)
     apart = np.abs(np.subtract.outer(np.arange(len(line_m)), np.arange(len(line_m)))) > 4
-    return crossings + BESIDE_COST * float(((gaps_m < BESIDE_M) & apart).sum()) / 2.0
+    beside = float(((gaps_m < BESIDE_M) & apart).sum()) / 2.0
+    return crossings + BESIDE_COST * beside + OFF_COST * _steps_off(line_m)
+
+
+def _steps_off(line_m: Floats) -> float:
+    """Return how much of a line lies off the table or at its rim, in steps of `STEP_M`."""
+    half_m = 0.5 * np.array(TABLE_SIZE_M) - RIM_M
+    return float((np.abs(line_m) > half_m).any(axis=1).mean() * arc_lengths(line_m)[-1] / STEP_M)
 
 
 def followed(line_m: Floats, to_m: Floats) -> Floats:

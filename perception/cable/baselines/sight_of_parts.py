@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from perception.cable.baselines.one_trace import first_trace
 from perception.cable.interfaces import CableVision, Tracer
-from perception.cable.types import CableScene, Crossing, Endpoint, Knot, Points, Trace
+from perception.cable.types import CableScene, Coverage, Crossing, Endpoint, Knot, Points, Trace
 from perception.camera import GreyImage
 
 
@@ -46,9 +46,9 @@ class SightOfParts(ABC):
         """Follow one cable; see `Tracer.trace`."""
         return self._tracer.trace(image, start_px, endpoints)
 
-    def explained_share(self, image: GreyImage, trace: Trace) -> float:
-        """Return the share of cable pixels in view that a trace accounts for, in [0, 1]."""
-        return self._parts.explained_share(image, trace)
+    def coverage(self, image: GreyImage, trace: Trace) -> Coverage:
+        """Return how much of the cable in view a trace accounts for."""
+        return self._parts.coverage(image, trace)
 
     @abstractmethod
     def crossings(self, image: GreyImage, traces: Sequence[Trace]) -> tuple[Crossing, ...]:

@@ -64,6 +64,7 @@ def test_a_line_that_crosses_itself_is_worse_and_so_is_one_that_lies_beside_itse
     assert tangle_cost(LINE) == 0.0
     assert tangle_cost(crossed) >= 1.0
     assert tangle_cost(beside) > 1.0
+    assert tangle_cost(LINE + np.array([0.0, 1.0])) > tangle_cost(LINE + np.array([0.5, 0.0])) > 2.0
 
 
 @pytest.mark.parametrize("left_holds_cage", [False, True])

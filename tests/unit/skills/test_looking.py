@@ -1,10 +1,13 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from cell_fakes import finished, frame, overhand
 
 from executive.core.work import InlineWorker
 from perception.cable.orientation import reversed_crossings, reversed_trace
-from perception.cable.types import Endpoint, Knot, Trace, TraceEnd, TraceStart
+from perception.cable.polyline import arc_lengths
+from perception.cable.types import Coverage, Endpoint, Knot, Trace, TraceEnd, TraceStart
 from perception.fresh_camera import FrozenError
 from skills.cable.account_for_cable import AccountForCable
 from skills.cable.connectors import with_connectors
@@ -19,8 +22,9 @@ from skills.cable.trace_cable import TraceCable
 class KnotNearTheEnd:
     """Finds a knot over the last fifth of the path that runs to the right."""
 
-    def __init__(self, trace):
+    def __init__(self, trace, covered=None):
         self.forward = trace.points_px
+        self.covered = covered
 
     def knots(self, image, traces, crossings):
         same = np.allclose(traces[0].points_px, self.forward)
@@ -31,8 +35,8 @@ class KnotNearTheEnd:
     def endpoints(self, image):
         return ()
 
-    def explained_share(self, image, trace):
-        return 0.5
+    def coverage(self, image, trace):
+        return self.covered
 
 
 class DarkCamera:
@@ -57,11 +61,31 @@ def test_turning_round_twice_changes_nothing():
     assert twice[0].arc_under == pytest.approx(crossings[0].arc_under)
 
 
-def test_cable_that_is_left_over_forbids_a_claim():
+@pytest.mark.parametrize(
+    ("covered", "answer"),
+    [
+        (Coverage(1.0, 0), None),
+        (Coverage(0.97, 20), None),
+        (Coverage(0.5, 20), "cable.unexplained"),
+        (Coverage(0.99, 200), "cable.unexplained"),
+    ],
+)
+def test_cable_that_is_left_over_forbids_a_claim(covered, answer):
     trace, _, _ = overhand()
-    skill = AccountForCable(KnotNearTheEnd(trace), InlineWorker())
+    skill = AccountForCable(KnotNearTheEnd(trace, covered), InlineWorker())
     outcome, _ = finished(skill, {"frame": frame(), "trace": trace})
-    assert outcome.reason.code == "cable.unexplained"
+    assert (outcome.reason and outcome.reason.code) == answer
+
+
+@pytest.mark.parametrize(("missing_m", "answer"), [(0.0, None), (0.01, None), (0.1, "cable.short")])
+def test_cable_that_is_too_short_hides_some_of_it(missing_m, answer):
+    trace, _, _ = overhand()
+    whole = with_connectors(replace(trace, end=TraceEnd.ENDPOINT))
+    seen_m = arc_lengths(frame().camera.on_plane(whole.points_px))[-1]
+    skill = AccountForCable(KnotNearTheEnd(trace, Coverage(1.0, 0)), InlineWorker())
+    inputs = {"frame": frame(), "trace": replace(trace, end=TraceEnd.ENDPOINT)}
+    outcome, _ = finished(skill, {**inputs, "length_m": seen_m + missing_m})
+    assert (outcome.reason and outcome.reason.code) == answer
 
 
 @pytest.mark.parametrize(("knotted", "untangled"), [(0.04, True), (0.06, False), (0.5, False)])

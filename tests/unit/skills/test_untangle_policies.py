@@ -15,7 +15,7 @@ from executive.engine.loading.loader import load_mission
 from executive.engine.nodes.builder import build
 from executive.engine.running.runner import MissionOutcome, Runner
 from perception.cable.selectable import SelectableVision
-from perception.cable.types import CableClaim, Endpoint, TraceEnd
+from perception.cable.types import CableClaim, Coverage, Endpoint, TraceEnd
 from skills.cable.policies import POLICIES, POLICY_NAMES
 
 MISSION = Path(__file__).parents[3] / "trees/missions/untangle.yaml"
@@ -73,8 +73,8 @@ class ScriptedVision:
     def trace(self, image, start_px, endpoints):
         return replace(TRACE, end=self.now.end)
 
-    def explained_share(self, image, trace):
-        return self.now.explained
+    def coverage(self, image, trace):
+        return Coverage(self.now.explained, 0)
 
     def crossings(self, image, traces):
         return CROSSINGS
