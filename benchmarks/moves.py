@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 from benchmarks.harness import Row, mean, median, percentile_95, share
 from perception.cable.planning import (
     Agreement,
-    Grasp,
     Plan,
     PlannerConfig,
     PlanStep,
@@ -24,6 +23,7 @@ from perception.cable.planning import (
     plan_moves,
 )
 from perception.cable.topology import Strand, curve_crossings
+from simulation.cable.carrying import Carried, carry
 from simulation.cable.configurations import starting_configuration
 from simulation.cable.knots import KNOT_NAMES, KnotName
 from simulation.cable.layout import Area
@@ -43,10 +43,7 @@ RULES = ConfigurationRules(
     area=Area((-0.45, -0.32), (0.45, 0.32)),
     most_crossings=10,
 )
-SPEED_M_S, STEP_S, LIFT_M = 0.25, 0.01, 0.03
 LONGEST_REST_S = 4.0
-# What lies between open fingers, their depth and width.
-FINGERS_M = (0.03, 0.03, 0.02)
 CONFIG = PlannerConfig(least_room=0.0)
 MOST_MOVES = 10
 
@@ -142,47 +139,8 @@ def undo(nodes_m: Floats) -> int | None:
 
 def make(rod: Rod, step: PlanStep) -> bool:
     """Make a move with hands that reach everywhere; say whether all of them took hold."""
-    hands = {f"hand {k}": grasp for k, grasp in enumerate(step.grasps)}
-    height_m = rod.parameters.radius_m
-    for hand, grasp in hands.items():
-        rod.move_hand(hand, _tool(grasp, grasp.point, height_m))
-    rod.advance(STEP_S)
-    held = [rod.close_hand(hand, grasp.role, *FINGERS_M) for hand, grasp in hands.items()]
-    up_m = height_m + LIFT_M
-    _move(rod, hands, (0.0, height_m), (0.0, up_m), LIFT_M)
-    way_m = max(float(np.linalg.norm(g.to - g.point)) for g in hands.values()) / PX_PER_M
-    _move(rod, hands, (0.0, up_m), (1.0, up_m), way_m)
-    _move(rod, hands, (1.0, up_m), (1.0, height_m), LIFT_M)
-    for hand in hands:
-        rod.release_hand(hand)
-    began_s = rod.time_s
-    while not rod.at_rest and rod.time_s - began_s < LONGEST_REST_S:
-        rod.advance(0.25)
-    return all(held)
-
-
-def _move(
-    rod: Rod,
-    hands: dict[str, Grasp],
-    begin: tuple[float, float],
-    end: tuple[float, float],
-    way_m: float,
-) -> None:
-    """Move hands between two (share of the way, height) at a steady speed."""
-    steps = max(round(way_m / SPEED_M_S / STEP_S), 1)
-    for share_done in np.linspace(0.0, 1.0, steps + 1)[1:]:
-        along, height_m = (1.0 - share_done) * np.array(begin) + share_done * np.array(end)
-        for hand, grasp in hands.items():
-            place = grasp.point + along * (grasp.to - grasp.point)
-            rod.move_hand(hand, _tool(grasp, place, height_m))
-        rod.advance(STEP_S)
-
-
-def _tool(grasp: Grasp, place: Floats, height_m: float) -> Floats:
-    """Return T_world_tcp of a gripper above a place that opens across the cable."""
-    pose = np.eye(4)
-    across = np.array([-grasp.direction[1], grasp.direction[0], 0.0])
-    down = np.array([0.0, 0.0, -1.0])
-    pose[:3, :3] = np.column_stack([across, np.cross(down, across), down])
-    pose[:3, 3] = (*(place / PX_PER_M), height_m)
-    return pose
+    parts = [
+        Carried(grasp.role, grasp.point / PX_PER_M, grasp.direction, grasp.to / PX_PER_M)
+        for grasp in step.grasps
+    ]
+    return carry(rod, parts, LONGEST_REST_S)

@@ -86,7 +86,7 @@ class OurSearcher:
         sign, met = push_sign(move), np.zeros((0, 4))
         after = box.at(box.x_m + sign * result.moved_m, box.y_m)
         if isinstance(move, Place):
-            after = box.at(move.x_m, move.y_m)
+            after = box.on_floor(move.x_m, move.y_m)
         elif result.short_m > SHORT_M:
             met = contact_beside(after, sign)[None]
         self.belief = self.reasoner.moved(self.belief, move.label, after, met)

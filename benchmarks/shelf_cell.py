@@ -106,7 +106,7 @@ class PhysicalShelf:
     def act(self, move: Move) -> MoveResult:
         """Push or put elsewhere what was seen."""
         box = self._known[move.label]
-        thing = Cuboid(box.x_m, box.y_m, box.size_m)
+        thing = Cuboid(box.x_m, box.y_m, box.size_m, box.bottom_m)
         if isinstance(move, Push):
             result = self.do(PushAlong(thing, move.shift_m))
         else:

@@ -106,6 +106,7 @@ def _open_table_cell(document: CellDocument, scenario: Mapping[str, object], see
     from executive.app.visions import selectable_vision
     from perception.fresh_camera import FreshCamera
     from robots.dual_arm import PlannedDualArm
+    from simulation.cable.foresight import CableForesight
     from simulation.table_cell import TableCell
 
     world = TableCell(document.config, scenario, seed)
@@ -115,6 +116,7 @@ def _open_table_cell(document: CellDocument, scenario: Mapping[str, object], see
         "vision": selectable_vision(
             partial(cable_vision, ROWS_OF_ARMS_AT_HOME), ROWS_OF_ARMS_AT_HOME
         ),
+        "foresight": CableForesight(),
         "rng": np.random.default_rng(seed),
         **workers(document.work),
     }

@@ -11,6 +11,7 @@ from perception.cable.types import (
     Coverage,
     Crossing,
     Endpoint,
+    ImaginedHand,
     Knot,
     Points,
     Trace,
@@ -134,4 +135,24 @@ class CableVision(Protocol):
 
     def scene(self, image: GreyImage, start_px: Points | None = None) -> CableScene:
         """Do all steps on one image, from a given start or from the ends that are seen."""
+        ...
+
+
+@runtime_checkable
+class Foresight(Protocol):
+    """Imagines what hands would do to a cable."""
+
+    def after(
+        self, line_m: Points, over: Sequence[float], hands: Sequence[ImaginedHand]
+    ) -> Points | None:
+        """Return how the cable should lie after hands have carried it and laid it down.
+
+        Args:
+            line_m: The cable on the table, shape (N, 2).
+            over: Arc positions where it is believed to lie on top of another strand.
+            hands: What they do; they move in step.
+
+        Returns:
+            Points along the cable, shape (M, 3); None where a hand would miss it.
+        """
         ...

@@ -5,6 +5,7 @@ Image points are (x, y) in pixels. Arc positions are fractions of a trace's leng
 
 from dataclasses import dataclass
 from enum import StrEnum
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -79,6 +80,21 @@ class Trace:
     points_px: Points
     end: TraceEnd
     probability: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ImaginedHand:
+    """What one hand would do to a cable.
+
+    Attributes:
+        role: Whether it holds the cable, or lets it slide.
+        arc: Arc position where it takes it, in [0, 1].
+        to_m: Where on the table it goes with it, shape (2,).
+    """
+
+    role: Literal["pinch", "cage"]
+    arc: float
+    to_m: Points
 
 
 @dataclass(frozen=True, slots=True)

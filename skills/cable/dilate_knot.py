@@ -8,14 +8,16 @@ import numpy as np
 
 from executive.core.outcome import failure, success
 from executive.core.skill import In, Port, SkillRun
+from executive.core.work import Worker
 from perception.cable.grasp_sites import GraspSite
+from perception.cable.interfaces import Foresight
 from perception.cable.polyline import arc_lengths
 from perception.cable.types import Crossing, Knot, Trace
 from perception.camera import CameraFrame
-from robots.interfaces import Arm, Floats, MotionFailure, TcpGoal
+from robots.interfaces import Arm, DualArm, Floats, MotionFailure, TcpGoal
 from skills.cable.grasping import CLEARANCE_M, LIFT_M, carried, grasp_goal
 from skills.cable.knot_sites import REACH_X_M, REACH_Y_M, Pair, given_pairs, searched_pairs
-from skills.cable.laying_out import Ends, Pull, best_places, crossings_of
+from skills.cable.laying_out import Ends, Pull, best_places, crossings_of, outcome_cost
 from skills.cable.policies import HoldAt
 from skills.motion.arm_skill import MOTION_REASONS, ArmSkill, MotionSteps
 from skills.motion.goals import above
@@ -31,6 +33,11 @@ MOST_ENDS = 8
 # So many pairs of sites in reach are tried for a way to such a place, each for so many places: to
 # find that two arms are in each other's way takes seconds. Places that lie this near are alike.
 MOST_PULLS, MOST_TRIES, ALIKE_M = 2, 2, 0.1
+# Hands that are so near to a place have come there.
+SAME_M = 0.02
+# Where pulls can be imagined, so many pairs that are so far apart along the trace are held against
+# each other, each with so many places out of as many.
+IMAGINED_PULLS, APART_ARC, IMAGINED_PLACES, IMAGINED_OF = 4, 0.015, 3, 60
 
 NOWHERE = MotionFailure(
     "motion.unreachable", "ik", "no two sites around the knot are apart and in reach"
@@ -51,6 +58,7 @@ class _Grip:
         pull: The same on the trace.
         ends_m: Places for both to go to, the best first; none for straight apart.
         onward_m: Straight motions of each from where it takes hold.
+        foreseen: How many crossings should be left at the first places, where that was imagined.
     """
 
     hands: _Hands
@@ -58,6 +66,28 @@ class _Grip:
     pull: Pull
     ends_m: Sequence[Ends] = ()
     onward_m: tuple[tuple[Floats, ...], tuple[Floats, ...]] = (UP_M, UP_M)
+    foreseen: int | None = None
+
+    def left_by(self, ends: Ends) -> int:
+        """Return how many crossings should be left when the hands have gone to these places."""
+        if self.foreseen is not None and np.allclose(ends, self.ends_m[0], atol=SAME_M):
+            return self.foreseen
+        return crossings_of(self.pull.predicted(ends))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Seen:
+    """What is seen of the cable.
+
+    Attributes:
+        frame: Overhead frame.
+        trace: Path of the cable.
+        over: Arc positions where it lies on top of itself.
+    """
+
+    frame: CameraFrame
+    trace: Trace
+    over: tuple[float, ...]
 
 
 class DilateKnot(ArmSkill):
@@ -77,6 +107,11 @@ class DilateKnot(ArmSkill):
     OUT = {"predicted": Port(int, "crossings that should be left")}
     REASONS = MOTION_REASONS | {"knot.none", "pull.refused", "grasp.missed"}
 
+    def __init__(self, arms: DualArm, worker: Worker, foresight: Foresight | None = None) -> None:
+        """Bind the arms, who plans for them, and who can imagine what pulls would do."""
+        super().__init__(arms, worker)
+        self._foresight = foresight
+
     def run(
         self,
         frame: Annotated[CameraFrame, In("overhead frame")],
@@ -95,7 +130,8 @@ class DilateKnot(ArmSkill):
             pairs = searched_pairs(trace, crossings, knots[0], frame, behind)
         else:
             pairs = given_pairs(trace, knots[0], frame)
-        found = yield from self._reach_down(frame, trace, pairs[:MOST_PAIRS], planned)
+        seen = _Seen(frame, trace, tuple(c.arc_over for c in crossings if _is_own(c)))
+        found = yield from self._reach_down(seen, pairs[:MOST_PAIRS], planned)
         if isinstance(found, MotionFailure):
             return failure(found.code, found.text, stage=found.stage)
         hands, pull, ends_m = found.hands, found.pull, found.ends_m
@@ -112,17 +148,17 @@ class DilateKnot(ArmSkill):
         if failed is not None:
             return failure(failed.code, failed.text, stage=failed.stage)
         cage_m, pinch_m = (self._arms.tcp_position(arm)[:2] for arm in hands)
-        return success(predicted=crossings_of(pull.predicted((cage_m, pinch_m))))
+        return success(predicted=found.left_by((cage_m, pinch_m)))
 
     def _reach_down(
-        self, frame: CameraFrame, trace: Trace, ranked: Sequence[Pair], planned: bool
+        self, seen: "_Seen", ranked: Sequence[Pair], planned: bool
     ) -> Generator[None, None, "_Grip | MotionFailure"]:
         """Put both hands around the cable at the best pair of sites that they can reach.
 
         Returns:
             How the cable is held, or why the last pair that was tried failed.
         """
-        grips = self._grips(frame, trace, ranked, planned)
+        grips = self._grips(seen, ranked, planned)
         failed = NOWHERE
         while True:
             found = yield from self._worker.run(next, grips, failed)
@@ -136,38 +172,58 @@ class DilateKnot(ArmSkill):
             failed = blocked
 
     def _grips(
-        self, frame: CameraFrame, trace: Trace, ranked: Sequence[Pair], planned: bool
+        self, seen: "_Seen", ranked: Sequence[Pair], planned: bool
     ) -> Iterator["_Grip | MotionFailure"]:
         """Yield ways to hold that both hands can come down to, those first that can go on.
 
         The last is a failure where none of them can go anywhere without making more crossings.
         """
         without, refused = list[_Grip](), 0
-        for pair in ranked:
-            goals = (_goal(frame, pair[0]), _goal(frame, pair[1]))
+        foreseen = planned and self._foresight is not None
+        most = IMAGINED_PULLS if foreseen else MOST_PULLS
+        for pair in _apart(ranked) if foreseen else ranked:
+            goals = (_goal(seen.frame, pair[0]), _goal(seen.frame, pair[1]))
             hands = self._arms.assign((above(goals[0], CLEARANCE_M), above(goals[1], CLEARANCE_M)))
             if isinstance(hands, MotionFailure):
                 continue
-            grip = _Grip(hands, goals, held_pull(frame, trace, *pair))
+            grip = _Grip(hands, goals, held_pull(seen.frame, seen.trace, *pair))
             if not planned:
                 yield grip
                 continue
             left_first = hands[0] == "left"
-            ends_m = tuple(best_places(grip.pull, left_first, MOST_ENDS))
+            count = IMAGINED_OF if foreseen else MOST_ENDS
+            ends_m = tuple(best_places(grip.pull, left_first, count))
             if not ends_m and grip.pull.pinch_m > grip.pull.cage_m:
                 refused += 1
             else:
                 without.append(replace(grip, ends_m=ends_m))
-                yield from self._with_places(without[-1])
-            if len(without) + refused == MOST_PULLS:
+                if not foreseen:
+                    yield from self._with_places(without[-1], unlike(ends_m)[:MOST_TRIES])
+            if len(without) + refused == most:
                 break
+        for grip, ends in self._best_imagined(seen, without):
+            yield from self._with_places(grip, [ends])
         yield from without
         if refused and not without:
             yield REFUSED
 
-    def _with_places(self, grip: "_Grip") -> Iterator["_Grip"]:
-        """Yield the way to hold with the best places to go to that both hands can make."""
-        for ends in unlike(grip.ends_m)[:MOST_TRIES]:
+    def _best_imagined(self, seen: "_Seen", grips: Sequence["_Grip"]) -> list[tuple["_Grip", Ends]]:
+        """Return ways to hold, and places to go to, that should leave the cable best, in order."""
+        foresight = self._foresight
+        if foresight is None:
+            return []
+        costs, choices = list[float](), list[tuple[_Grip, Ends]]()
+        for grip in grips:
+            for ends in unlike(grip.ends_m)[:IMAGINED_PLACES]:
+                nodes_m = foresight.after(grip.pull.line_m, seen.over, grip.pull.hands(ends))
+                if nodes_m is not None:
+                    costs.append(outcome_cost(nodes_m))
+                    choices.append((replace(grip, foreseen=crossings_of(nodes_m[:, :2])), ends))
+        return [choices[k] for k in np.argsort(costs, kind="stable").tolist()]
+
+    def _with_places(self, grip: "_Grip", places: Sequence[Ends]) -> Iterator["_Grip"]:
+        """Yield the way to hold with the first places to go to that both hands can make."""
+        for ends in places:
             onward_m = tuple(
                 carried(np.append(end_m - goal.position_m[:2], 0.0))
                 for end_m, goal in zip(ends, grip.goals, strict=True)
@@ -204,6 +260,21 @@ class DilateKnot(ArmSkill):
         # Where hands cannot lay it down at the end of their way, the cable falls these 3 cm.
         yield from self._move_by(dict.fromkeys(hands, -up_m))
         return failed
+
+
+def _apart(pairs: Sequence[Pair]) -> Iterator[Pair]:
+    """Yield those pairs of sites that are not much the same as earlier ones."""
+    kept = list[Floats]()
+    for pair in pairs:
+        arcs = np.array([site.arc for site in pair])
+        if all(np.abs(arcs - other).max() > APART_ARC for other in kept):
+            kept.append(arcs)
+            yield pair
+
+
+def _is_own(crossing: Crossing) -> bool:
+    """Return whether the first trace crosses itself there."""
+    return crossing.trace_over == crossing.trace_under == 0
 
 
 def unlike(ends_m: Sequence[Ends]) -> list[Ends]:

@@ -114,6 +114,36 @@ def test_a_pull_says_how_many_crossings_it_should_leave():
     assert 0 <= outcome.outputs["predicted"] <= crossings_of(on_table)
 
 
+class LikesRoom:
+    """Imagines a straight cable where the hands go to one pair of places, and a heap elsewhere."""
+
+    def __init__(self):
+        self.liked, self.asked = None, []
+
+    def after(self, line_m, over, hands):
+        self.asked.append(np.vstack([hand.to_m for hand in hands]))
+        if self.liked is None:
+            self.liked = self.asked[-1] if len(self.asked) == 3 else None
+        good = self.liked is self.asked[-1]
+        turn = np.linspace(0.0, 1.0 if good else 25.0, 200)
+        circle = 0.1 * np.column_stack([np.cos(turn), np.sin(turn)])
+        return np.column_stack([circle, np.linspace(0.0, 0.1, 200)])
+
+
+def test_of_pulls_that_can_be_imagined_that_with_the_best_outcome_is_made():
+    arms, foresight = ArrivingArms(), LikesRoom()
+    trace, crossings, knot = overhand()
+    inputs = {"frame": frame(), "trace": trace, "crossings": crossings, "knots": (knot,)}
+    skill = DilateKnot(arms, InlineWorker(), foresight)
+    outcome, _ = finished(skill, inputs | {"planned": True})
+    moves = [entry[1] for entry in arms.log if entry[0] == "move"]
+    ends = np.array([moves[3][arm][:2] for arm in ("left", "right")])
+    assert outcome.status == "SUCCESS"
+    assert len(foresight.asked) > 3
+    gaps_m = [np.abs(order - foresight.liked).max() for order in (ends, ends[::-1])]
+    assert min(gaps_m) < 2e-3
+
+
 def test_a_planned_dilation_ends_where_the_cable_should_lie_best():
     arms = ArrivingArms()
     trace, crossings, knot = overhand()

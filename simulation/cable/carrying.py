@@ -1,0 +1,90 @@
+"""Hands that reach everywhere take a cable, carry it and lay it down: for judging and imagining."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from simulation.cable.hands import GraspMode
+from simulation.cable.rod import Rod
+
+Floats = NDArray[np.float64]
+
+SPEED_M_S, STEP_S, LIFT_M = 0.25, 0.01, 0.03
+# What lies between open fingers, their depth and width.
+FINGERS_M = (0.03, 0.03, 0.02)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Carried:
+    """What one hand does.
+
+    Attributes:
+        mode: Whether it holds the cable or lets it slide.
+        from_m: Where it takes the cable, on the table, shape (2,).
+        direction: Unit tangent of the cable there, shape (2,).
+        to_m: Where it goes with it, shape (2,).
+    """
+
+    mode: GraspMode
+    from_m: Floats
+    direction: Floats
+    to_m: Floats
+
+
+def carry(rod: Rod, parts: Sequence[Carried], longest_rest_s: float) -> bool:
+    """Take the cable, lift, go, lay down, let go, and wait until it rests.
+
+    Args:
+        rod: The cable, on the table.
+        parts: What each hand does; they move in step.
+        longest_rest_s: It is waited for so long at most.
+
+    Returns:
+        Whether every hand had taken the cable.
+    """
+    hands = {f"hand {k}": part for k, part in enumerate(parts)}
+    height_m = rod.parameters.radius_m
+    for hand, part in hands.items():
+        rod.move_hand(hand, _tool(part, part.from_m, height_m))
+    rod.advance(STEP_S)
+    held = [rod.close_hand(hand, part.mode, *FINGERS_M) for hand, part in hands.items()]
+    up_m = height_m + LIFT_M
+    _move(rod, hands, (0.0, height_m), (0.0, up_m), LIFT_M)
+    way_m = max(float(np.linalg.norm(part.to_m - part.from_m)) for part in parts)
+    _move(rod, hands, (0.0, up_m), (1.0, up_m), way_m)
+    _move(rod, hands, (1.0, up_m), (1.0, height_m), LIFT_M)
+    for hand in hands:
+        rod.release_hand(hand)
+    began_s = rod.time_s
+    while not rod.at_rest and rod.time_s - began_s < longest_rest_s:
+        rod.advance(0.25)
+    return all(held)
+
+
+def _move(
+    rod: Rod,
+    hands: Mapping[str, Carried],
+    begin: tuple[float, float],
+    end: tuple[float, float],
+    way_m: float,
+) -> None:
+    """Move hands between two (share of the way, height) at a steady speed."""
+    steps = max(round(way_m / SPEED_M_S / STEP_S), 1)
+    for share_done in np.linspace(0.0, 1.0, steps + 1)[1:]:
+        along, height_m = (1.0 - share_done) * np.array(begin) + share_done * np.array(end)
+        for hand, part in hands.items():
+            place_m = part.from_m + along * (part.to_m - part.from_m)
+            rod.move_hand(hand, _tool(part, place_m, height_m))
+        rod.advance(STEP_S)
+
+
+def _tool(part: Carried, place_m: Floats, height_m: float) -> Floats:
+    """Return T_world_tcp of a gripper above a place that opens across the cable."""
+    pose = np.eye(4)
+    across = np.array([-part.direction[1], part.direction[0], 0.0])
+    down = np.array([0.0, 0.0, -1.0])
+    pose[:3, :3] = np.column_stack([across, np.cross(down, across), down])
+    pose[:3, 3] = (*place_m, height_m)
+    return pose
