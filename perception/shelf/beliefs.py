@@ -47,11 +47,13 @@ class Refusal:
         label: The object.
         box: Where it stood.
         sign: +1 for a push along x, -1 for one against it, 0 for the cup.
+        lasting: Whether it holds wherever the object stands.
     """
 
     label: str
     box: Box
     sign: int
+    lasting: bool
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -54,7 +54,7 @@ def completed(
     fits = _fits([(found[each.number], each.centres_m) for each in ranges], view, caster)
     sure, better = footprints([sighting.sure for sighting in found]), list(found)
     for one, mine in zip(ranges, fits, strict=True):
-        others = np.delete(sure, one.number, axis=0)
+        others = sure[beside([sighting.sure for sighting in found], one.number)]
         own = mine & clear_of(found[one.number].box, one.centres_m, others)
         if own.any():
             better[one.number] = _middle(found[one.number], one.centres_m[own])
@@ -85,13 +85,25 @@ def _fits(
     counts = [len(places) for _, places in tried]
     centres_m = np.vstack([places for _, places in tried])
     sizes_m = np.repeat([sighting.box.size_m for sighting, _ in tried], counts, axis=0)
-    low_m = np.column_stack([centres_m - 0.5 * sizes_m[:, :2], np.zeros(len(centres_m))])
+    bottoms_m = np.repeat([sighting.box.bottom_m for sighting, _ in tried], counts)
+    low_m = np.column_stack([centres_m - 0.5 * sizes_m[:, :2], bottoms_m])
     shown = caster.cast(low_m, low_m + sizes_m)
     # Where depth is unknown nothing speaks against it: a comparison with NaN is false.
     through = view.depth_m.ravel()[shown.pixel] > shown.depth_m + MARGIN_M
     stray = shown.sums(through.astype(np.float64))
     limit = np.maximum(STRAY, STRAY_SHARE * shown.sums(np.ones(len(shown.pixel))))
     return np.split(stray <= limit, np.cumsum(counts)[:-1])
+
+
+def beside(boxes: Sequence[Box], number: int) -> Bools:
+    """Say which boxes share a height with one of them, so that they stand beside it, shape (N,)."""
+    own = boxes[number]
+    level = [
+        min(own.high_m[2], one.high_m[2]) - max(own.low_m[2], one.low_m[2]) > TOUCH_M
+        for one in boxes
+    ]
+    level[number] = False
+    return np.array(level, dtype=bool)
 
 
 def clear_of(box: Box, centres_m: Floats, others: Floats) -> Bools:
@@ -107,5 +119,5 @@ def _middle(sighting: Sighting, centres_m: Floats) -> Sighting:
     nearest = centres_m[np.abs(centres_m - 0.5 * (low_m + high_m)).sum(axis=1).argmin()]
     x_m, y_m = nearest.tolist()
     loose_x_m, loose_y_m = (0.5 * (high_m - low_m)).tolist()
-    box = Box(x_m, y_m, sighting.box.size_m)
+    box = sighting.box.at(x_m, y_m)
     return replace(sighting, box=box, loose_m=(loose_x_m, loose_y_m))

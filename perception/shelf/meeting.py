@@ -6,7 +6,7 @@ import numpy as np
 
 from perception.shelf.beliefs import Refusal, SeenObject, ShelfBelief
 from perception.shelf.planning.free_floor import CELL_M
-from perception.shelf.planning.room import footprints, overlapping
+from perception.shelf.planning.room import OUTSIDE_M, footprints, overlapping
 from perception.shelf.types import Bools, Box, Floats
 
 # How likely a look is to be mistaken that rules a place out. What is ruled out comes up again when
@@ -55,13 +55,16 @@ def still_refused(refusals: tuple[Refusal, ...], before: Box, after: Box) -> tup
         before: What was moved, where it stood.
         after: Where it stands.
     """
-    margin_m = NEAR_M * np.array([-1.0, -1.0, 1.0, 1.0])
-    changed = footprints([before, after]) + margin_m
+    changed = footprints([before, after]) + NEAR_M * np.array([-1.0, -1.0, 1.0, 1.0])
     return tuple(
-        one
-        for one in refusals
-        if not one.sign or not overlapping(footprints([one.box])[0], changed).any()
+        one for one in refusals if one.lasting or not overlapping(_needed(one), changed).any()
     )
+
+
+def _needed(refusal: Refusal) -> Floats:
+    """Return the footprint on which it depends whether an object can be moved, shape (4,)."""
+    own = footprints([refusal.box])[0]
+    return own if refusal.sign else np.array([own[0], OUTSIDE_M, own[2], own[3]])
 
 
 def rescaled(plausible: Floats) -> Floats:

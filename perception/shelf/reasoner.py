@@ -24,6 +24,7 @@ from perception.shelf.planning.free_floor import CELL_M, covered_cells, free_cel
 from perception.shelf.planning.lifting import slip_chance
 from perception.shelf.planning.looking_ahead import (
     ANYHOW,
+    BY_CUP,
     BY_PUSH,
     FIXED,
     LEAST_FOUND,
@@ -40,7 +41,7 @@ from perception.shelf.refining import refined
 from perception.shelf.semantic import floor_semantics
 from perception.shelf.stock import Stock
 from perception.shelf.tracking import Look, tracked
-from perception.shelf.types import Bools, Box, Floats, ShelfView, Sighting, Size
+from perception.shelf.types import Bools, Box, Floats, ShelfView, Sighting, Size, stands_on
 
 # So many cameras' rays and silhouettes are kept: they cost more than everything else.
 KEPT = 16
@@ -56,8 +57,8 @@ GONE = ("push.nothing_there", "suction.lost")
 UNHELD = ("suction.missed", "suction.lost")
 # After this one something stands beside it.
 BLOCKED = "push.blocked"
-# After these it cannot be pushed that way from where it stands.
-STUCK = (BLOCKED, "push.no_room_for_blade")
+# After these it cannot be moved that way from where it stands.
+STUCK = (BLOCKED, "push.no_room_for_blade", "suction.obstructed")
 
 
 class SearchReasoner:
@@ -169,7 +170,7 @@ class SearchReasoner:
         before = object_of(belief, label)
         if before is None:
             return meeting(belief, met, felt=True)
-        objects = tuple(_stood(one, box) if one.label == label else one for one in belief.objects)
+        objects = _after_move(belief.objects, before, box)
         moved = replace(
             belief,
             objects=objects,
@@ -186,7 +187,7 @@ class SearchReasoner:
         if thing is None:
             return belief
         if failure in UNHELD + STUCK:
-            refusal = Refusal(move.label, thing.box, push_sign(move))
+            refusal = Refusal(move.label, thing.box, push_sign(move), failure in UNHELD)
             belief = replace(belief, refusals=(*belief.refusals, refusal))
         if failure in GONE:
             return self.removed(belief, move.label)
@@ -271,6 +272,8 @@ class SearchReasoner:
             return UNSEEN
         unheld = any(each.label == one.label and not each.sign for each in belief.refusals)
         heavy = slip_chance(one.box.size_m, self._reach) > TOO_HEAVY
+        if one.box.bottom_m > 0.0:
+            return FIXED if unheld or heavy else BY_CUP
         return BY_PUSH if unheld or heavy else ANYHOW
 
     def _weighted(self, belief: ShelfBelief, possible: Bools) -> ShelfBelief:
@@ -326,10 +329,25 @@ class SearchReasoner:
         return self._poses[key]
 
 
+def _after_move(
+    objects: tuple[SeenObject, ...], moved: SeenObject, box: Box
+) -> tuple[SeenObject, ...]:
+    """Return objects after a move of one of them: what stands on it goes along."""
+    x_m, y_m = box.x_m - moved.box.x_m, box.y_m - moved.box.y_m
+    return tuple(
+        _stood(one, box) if one.label == moved.label
+        else _stood(one, one.box.at(one.box.x_m + x_m, one.box.y_m + y_m))
+        if stands_on(one.box, moved.box)
+        else one
+        for one in objects
+    )  # fmt: skip
+
+
 def _stood(one: SeenObject, box: Box) -> SeenObject:
     """Return an object where it stands after a move; what is sure of it has moved as far."""
     x_m, y_m = one.sure.x_m + box.x_m - one.box.x_m, one.sure.y_m + box.y_m - one.box.y_m
-    return replace(one, box=box, sure=one.sure.at(x_m, y_m))
+    sure = replace(one.sure, x_m=x_m, y_m=y_m, bottom_m=box.bottom_m)
+    return replace(one, box=box, sure=sure)
 
 
 def _glimpsed(belief: ShelfBelief) -> Floats:

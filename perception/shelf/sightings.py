@@ -1,7 +1,7 @@
 """From a view to boxes: where objects stand, as far as depth and their known sizes tell."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.ndimage import find_objects
@@ -18,6 +18,8 @@ OUTLIERS = 0.02
 STEP_M = 0.01
 # What is nearest of an object and is narrower or lower may be a side or a top, and not its front.
 SLIVER_M = 0.012
+# What shows higher than it is by more does not stand on the floor.
+ON_ANOTHER_M = 0.02
 
 
 def sightings(
@@ -94,7 +96,15 @@ def _boxes(
         seen_y_m = 0.5 * (extent.front_m + extent.back_m)
         sure = Box(middle_m, seen_y_m, (min(width_m, size_m[0]), deep_m, extent.top_m))
     x_m = _centre(extent.left_m, extent.right_m, size_m[0], _open_sides(depth_m, near))
-    return Box(float(np.clip(x_m, half_m[0], shelf.width_m - half_m[0])), y_m, size_m), sure
+    x_m = float(np.clip(x_m, half_m[0], shelf.width_m - half_m[0]))
+    bottom_m = _bottom_m(extent.top_m, size_m[2])
+    return Box(x_m, y_m, size_m, bottom_m), replace(sure, bottom_m=bottom_m)
+
+
+def _bottom_m(top_m: float, height_m: float) -> float:
+    """Return at which height an object stands: what shows higher than it is stands on another."""
+    above_m = top_m - height_m
+    return above_m if above_m > ON_ANOTHER_M else 0.0
 
 
 def _extent(points_m: Floats, mask: Bools, caster: BoxCaster) -> tuple[Bools, _Extent]:

@@ -8,7 +8,7 @@ from scipy.optimize import linear_sum_assignment
 
 from perception.shelf.beliefs import OUT_OF_VIEW, SeenObject
 from perception.shelf.casting import BoxCaster
-from perception.shelf.completing import clear_of
+from perception.shelf.completing import beside, clear_of
 from perception.shelf.detections import LEAST, Detections, entropy_bits
 from perception.shelf.planning.room import footprints
 from perception.shelf.sightings import sightings
@@ -196,7 +196,8 @@ def _settled(objects: tuple[SeenObject, ...]) -> tuple[SeenObject, ...]:
     for index, one in enumerate(objects):
         places_m = _tried(one)
         if len(places_m) > 1:
-            free = clear_of(one.box, places_m, np.delete(sure, index, axis=0))
+            others = sure[beside([each.sure for each in objects], index)]
+            free = clear_of(one.box, places_m, others)
             if free.any() and not free.all():
                 low_m, high_m = float(places_m[free, 0].min()), float(places_m[free, 0].max())
                 box = one.box.at(0.5 * (low_m + high_m), one.box.y_m)
@@ -239,4 +240,4 @@ def _kept(look: Look, unseen: Sequence[SeenObject]) -> list[SeenObject]:
 def _core(box: Box) -> Box:
     """Return the middle of a box, whose place is known to some millimetres alone."""
     width_m, depth_m, height_m = box.size_m
-    return Box(box.x_m, box.y_m, (0.8 * width_m, 0.8 * depth_m, 0.9 * height_m))
+    return replace(box, size_m=(0.8 * width_m, 0.8 * depth_m, 0.9 * height_m))

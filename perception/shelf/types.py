@@ -1,8 +1,8 @@
 """What shelf perception speaks of.
 
 The shelf's frame: origin at the front left lower corner of the inside as the camera sees it, x
-along the shelf, y into it, z up. Objects are cuboids that stand on the floor of the shelf with
-their faces along the axes, as in the thesis (section 5.2).
+along the shelf, y into it, z up. Objects are cuboids with their faces along the axes, as in the
+thesis (section 5.2). They stand on the floor of the shelf, or one of them on another.
 """
 
 from dataclasses import dataclass
@@ -17,6 +17,10 @@ Bools = NDArray[np.bool_]
 Segments = NDArray[np.int16]
 Size = tuple[float, float, float]
 
+# What lies on another box begins where that ends, give or take so much.
+LEVEL_M = 0.02
+# Objects that touch do not collide.
+TOUCH_M = 1e-6
 # What a segmentation image holds where no object is.
 NOTHING = -1
 
@@ -44,16 +48,18 @@ class Box:
         x_m: Centre along the shelf.
         y_m: Centre into the shelf.
         size_m: Width (x), depth (y) and height (z).
+        bottom_m: Height of its lower side above the floor; 0 unless it stands on another one.
     """
 
     x_m: float
     y_m: float
     size_m: Size
+    bottom_m: float = 0.0
 
     @property
     def low_m(self) -> Size:
         """Lower corner (x, y, z)."""
-        return (self.x_m - 0.5 * self.size_m[0], self.y_m - 0.5 * self.size_m[1], 0.0)
+        return (self.x_m - 0.5 * self.size_m[0], self.y_m - 0.5 * self.size_m[1], self.bottom_m)
 
     @property
     def high_m(self) -> Size:
@@ -61,11 +67,15 @@ class Box:
         return (
             self.x_m + 0.5 * self.size_m[0],
             self.y_m + 0.5 * self.size_m[1],
-            self.size_m[2],
+            self.bottom_m + self.size_m[2],
         )
 
     def at(self, x_m: float, y_m: float) -> "Box":
-        """Return the same box elsewhere."""
+        """Return the same box elsewhere, at the same height."""
+        return Box(x_m, y_m, self.size_m, self.bottom_m)
+
+    def on_floor(self, x_m: float, y_m: float) -> "Box":
+        """Return the same box elsewhere on the floor."""
         return Box(x_m, y_m, self.size_m)
 
 
@@ -74,6 +84,15 @@ def corners(boxes: "list[Box] | tuple[Box, ...]") -> tuple[Floats, Floats]:
     low_m = np.array([box.low_m for box in boxes], dtype=np.float64).reshape(-1, 3)
     high_m = np.array([box.high_m for box in boxes], dtype=np.float64).reshape(-1, 3)
     return low_m, high_m
+
+
+def stands_on(upper: Box, lower: Box) -> bool:
+    """Say whether a box stands on another one, as far as places are known."""
+    if upper.bottom_m == 0.0 or abs(upper.bottom_m - lower.high_m[2]) > LEVEL_M:
+        return False
+    wide = min(upper.high_m[0], lower.high_m[0]) - max(upper.low_m[0], lower.low_m[0])
+    deep = min(upper.high_m[1], lower.high_m[1]) - max(upper.low_m[1], lower.low_m[1])
+    return wide > TOUCH_M and deep > TOUCH_M
 
 
 @dataclass(frozen=True, slots=True, eq=False)

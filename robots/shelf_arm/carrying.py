@@ -43,7 +43,7 @@ def bring_back(motions: ShelfMotions) -> Step:
     thing = motions.carried
     if thing is not None and motions.driver.holds():
         yield from bring_out(motions, thing)
-        yield from put_down(motions, thing, thing.x_m, thing.y_m)
+        yield from put_down(motions, thing, thing.x_m, thing.y_m, thing.bottom_m)
         return
     if motions.driver.holds():  # but it still stands where it stood
         motions.driver.suck(False)
@@ -62,7 +62,7 @@ def take(motions: ShelfMotions, thing: Cuboid) -> Step:
     """
     settings, driver = motions.settings, motions.driver
     face_m = thing.y_m - 0.5 * thing.size_m[1]
-    height_m = thing.bottom_m + max(settings.cup_height_m, 0.5 * thing.size_m[2])
+    height_m = _face_height_m(motions, thing, thing.bottom_m)
     start = np.array([thing.x_m, -settings.before_m, height_m])
     near_m = face_m - settings.face_slack_m + settings.before_m
     up = np.array([0.0, 0.0, settings.lift_m])
@@ -104,8 +104,17 @@ def bring_out(motions: ShelfMotions, thing: Cuboid) -> Step:
         raise ActionError(ToolFailure.OBSTRUCTED, f"it was caught on the way out, y = {at_m:.3f}")
 
 
-def put_down(motions: ShelfMotions, thing: Cuboid, x_m: float, y_m: float) -> Step:
+def put_down(
+    motions: ShelfMotions, thing: Cuboid, x_m: float, y_m: float, bottom_m: float = 0.0
+) -> Step:
     """Carry what is held before the shelf to where its middle is to be, and let go of it.
+
+    Args:
+        motions: The tool.
+        thing: What is held, where it was taken from.
+        x_m: Where its middle is to be.
+        y_m: The same, into the shelf.
+        bottom_m: Height of what it is to stand on; 0 is the floor.
 
     Raises:
         ActionError: Something is in the way (the object is held before the shelf then), or it
@@ -113,7 +122,8 @@ def put_down(motions: ShelfMotions, thing: Cuboid, x_m: float, y_m: float) -> St
     """
     settings, driver = motions.settings, motions.driver
     before_m = motions.tip_m()
-    aside = np.array([x_m - before_m[0], 0.0, 0.0])
+    height_m = _face_height_m(motions, thing, bottom_m) + settings.lift_m
+    aside = np.array([x_m - before_m[0], 0.0, height_m - before_m[2]])
     yield from carry(motions, aside)
     inward = np.array([0.0, y_m - 0.5 * thing.size_m[1] - before_m[1], 0.0])
     yield from carry(motions, inward, settings.entry_force_n)
@@ -158,6 +168,11 @@ def carry(
         raise ActionError(
             ToolFailure.LOST, f"it fell off near x = {tip[0]:.3f} m, y = {tip[1]:.3f} m"
         )
+
+
+def _face_height_m(motions: ShelfMotions, thing: Cuboid, bottom_m: float) -> float:
+    """Return how high the cups hold an object by its face, when it stands at some height."""
+    return bottom_m + max(motions.settings.cup_height_m, 0.5 * thing.size_m[2])
 
 
 def _touch(motions: ShelfMotions, touch: Floats) -> Step:

@@ -20,7 +20,7 @@ from simulation.shelf.cell_config import ShelfCellConfig
 from simulation.shelf.contents import ShelfContents
 from simulation.shelf.kinematic_tool import KinematicTool
 from simulation.shelf.picturing import SensorNoise, ShelfPicturer
-from simulation.shelf.scenes import Scene, SceneRules, draw_scene
+from simulation.shelf.scenario import drawn_scene
 from simulation.shelf.stocking import stock_of
 from simulation.shelf.taxonomy import shipped_domain
 from simulation.shelf_cell.config import ShelfScenario
@@ -104,7 +104,7 @@ class KinematicShelfCell:
         chances = [np.random.default_rng(one) for one in seeds]
         shelf = Shelf()
         self._front = front_camera(shelf, self.settings.camera.width_px)
-        self._scene = _scene(wanted, shelf, self._front, chances[0])
+        self._scene = drawn_scene(wanted, shelf, self._front, chances[0])
         self.stock = stock_of(shipped_domain(wanted.domain), self._scene)
         tool, camera = self.settings.tool, self.settings.camera
         self.reach = Reach(blade_m=tool.blade_m, suction=tool.suction)
@@ -209,7 +209,8 @@ class KinematicShelfCell:
         if not self.tool.resting():
             raise DeviceError("shelf cell: the tool moves; expected a cell at rest")
         boxes = {
-            name: [box.x_m, box.y_m, *box.size_m] for name, box in self._contents.boxes.items()
+            name: [box.x_m, box.y_m, *box.size_m, box.bottom_m]
+            for name, box in self._contents.boxes.items()
         }
         state = {
             "scene": self._scene.digest,
@@ -236,7 +237,7 @@ class KinematicShelfCell:
         if state.get("scene") != self._scene.digest:
             raise InputError("shelf cell: got a snapshot of another scene")
         self._contents.set_boxes(
-            {name: Box(row[0], row[1], (row[2], row[3], row[4]))
+            {name: Box(row[0], row[1], (row[2], row[3], row[4]), row[5])
              for name, row in state["boxes"].items()}
         )  # fmt: skip
         self.tool.restore(
@@ -263,10 +264,3 @@ class KinematicShelfCell:
             toppled=self.tool.toppled,
             disorder_m=round(float(np.mean(away)), 4) if away else 0.0,
         )
-
-
-def _scene(
-    wanted: ShelfScenario, shelf: Shelf, camera: CameraModel, rng: np.random.Generator
-) -> Scene:
-    rules = SceneRules(wanted.count, wanted.organisation, wanted.scale)
-    return draw_scene(shipped_domain(wanted.domain), rules, rng, shelf, camera)

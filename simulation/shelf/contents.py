@@ -1,7 +1,9 @@
 """What stands on a shelf, and what pushes and the suction cup make of it; nothing falls by itself.
 
 The assumptions are the thesis's (section 5.2): an action moves one object, and pushes stop at
-contact. A push that meets the hidden target stops there like any other.
+contact. A push that meets the hidden target stops there like any other. What stands on another
+object goes along with it when that is pushed, which is slow; it is taken by the cup alone, and what
+carries it is not lifted.
 """
 
 from collections.abc import Mapping
@@ -18,7 +20,7 @@ from perception.shelf.planning.room import (
     push_room_m,
     way_out,
 )
-from perception.shelf.types import Box, Floats, Shelf
+from perception.shelf.types import LEVEL_M, Box, Floats, Shelf, stands_on
 from simulation.shelf.scenes import Scene
 
 # A push that moves an object by less has moved nothing.
@@ -76,22 +78,25 @@ class ShelfContents:
         """Push an object along the shelf until it has gone that far or touches something."""
         box, others = self._boxes[label], self._others(label)
         moved, sign = footprints([box])[0], 1 if shift_m > 0.0 else -1
-        if not blade_fits(moved, others, sign, self.shelf, self._reach):
+        if box.bottom_m > 0.0 or not blade_fits(moved, others, sign, self.shelf, self._reach):
             return MoveResult(MoveFailure.NO_BLADE)
         room_m = push_room_m(moved, others, sign, self.shelf, self._reach)
         went_m = min(abs(shift_m), room_m)
         if went_m < LEAST_SHIFT_M:
             return MoveResult(MoveFailure.NO_ROOM)
-        self._boxes[label] = box.at(box.x_m + sign * went_m, box.y_m)
+        for name in [label, *self._carried(label)]:
+            one = self._boxes[name]
+            self._boxes[name] = one.at(one.x_m + sign * went_m, one.y_m)
         return MoveResult(None, went_m, abs(shift_m) - went_m)
 
     def place(self, label: str, x_m: float, y_m: float) -> MoveResult:
         """Take an object out straight and put it down elsewhere."""
-        box, others = self._boxes[label], self._others(label)
-        failure = self._comes_out(box, others)
+        box = self._boxes[label]
+        failure = self._comes_out(label)
         if failure is not None:
             return MoveResult(failure)
-        put = box.at(x_m, y_m)
+        put = box.on_floor(x_m, y_m)
+        others = footprints([one for name, one in self._boxes.items() if name != label])
         if not fits_at(footprints([put]), others, self.shelf)[0]:
             return MoveResult(MoveFailure.NO_PLACE)
         self._boxes[label] = put
@@ -99,7 +104,7 @@ class ShelfContents:
 
     def take_out(self, label: str) -> MoveResult:
         """Take an object out of the shelf for good."""
-        failure = self._comes_out(self._boxes[label], self._others(label))
+        failure = self._comes_out(label)
         if failure is not None:
             return MoveResult(failure)
         box = self._boxes.pop(label)
@@ -113,7 +118,8 @@ class ShelfContents:
         fallen = Box(edge_m + sign * 0.5 * height_m, box.y_m, (height_m, depth_m, width_m))
         row = footprints([fallen])
         inside = row[0, 0] >= 0.0 and row[0, 2] <= self.shelf.width_m
-        if not inside or height_m <= width_m or not self._free(label, row):
+        laden = bool(self._carried(label)) or box.bottom_m > 0.0
+        if laden or not inside or height_m <= width_m or not self._free(label, row):
             return False
         self._boxes[label] = fallen
         return True
@@ -129,14 +135,33 @@ class ShelfContents:
             self._boxes[label] = fallen
 
     def _free(self, label: str, row: Floats) -> bool:
-        others = self._others(label)
+        others = footprints([one for name, one in self._boxes.items() if name != label])
         wide = (np.minimum(row[0, 2:], others[:, 2:]) - np.maximum(row[0, :2], others[:, :2])) > 0.0
         return not bool(wide.all(axis=1).any())
 
-    def _comes_out(self, box: Box, others: Floats) -> MoveFailure | None:
+    def _comes_out(self, label: str) -> MoveFailure | None:
         if not self._reach.suction:
             return MoveFailure.NO_SUCTION
-        return None if way_out(footprints([box])[0], others) else MoveFailure.OBSTRUCTED
+        if self._carried(label) or not way_out(
+            footprints([self._boxes[label]])[0], self._others(label)
+        ):
+            return MoveFailure.OBSTRUCTED
+        return None
+
+    def _carried(self, label: str) -> list[str]:
+        """Return what stands on an object."""
+        own = self._boxes[label]
+        return [name for name, box in self._boxes.items() if stands_on(box, own)]
 
     def _others(self, label: str) -> Floats:
-        return footprints([box for name, box in self._boxes.items() if name != label])
+        """Return footprints of what may be in the way of an object, at whatever height it is."""
+        own = self._boxes[label]
+        return footprints(
+            [
+                box
+                for name, box in self._boxes.items()
+                if name != label
+                and (own.bottom_m == 0.0 or box.high_m[2] > own.bottom_m + LEVEL_M)
+                and not stands_on(box, own)
+            ]
+        )

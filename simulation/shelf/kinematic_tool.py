@@ -12,8 +12,7 @@ import numpy as np
 from executive.core.errors import DeviceError, InputError
 from executive.core.registry import closest
 from perception.camera import CameraModel
-from perception.shelf.planning.room import footprints
-from perception.shelf.types import Box
+from perception.shelf.types import Box, corners
 from robots.shelf_tool import (
     Cuboid,
     LookAlong,
@@ -221,9 +220,9 @@ class KinematicTool:
     def _touched(self, thing: Cuboid) -> str | None:
         """Return what stands where something is said to stand: the object with most overlap."""
         boxes = self._contents.boxes
-        said = footprints([Box(thing.x_m, thing.y_m, thing.size_m)])[0]
-        rows = footprints(list(boxes.values()))
-        low, high = np.maximum(rows[:, :2], said[:2]), np.minimum(rows[:, 2:], said[2:])
+        said = Box(thing.x_m, thing.y_m, thing.size_m, thing.bottom_m)
+        lows_m, highs_m = corners(list(boxes.values()))
+        low, high = np.maximum(lows_m, said.low_m), np.minimum(highs_m, said.high_m)
         common = np.maximum(high - low, 0.0).prod(axis=1)
         best = int(np.argmax(common)) if len(common) else 0
         return list(boxes)[best] if len(common) and common[best] > 0.0 else None
@@ -248,7 +247,7 @@ def _failed(failure: ToolFailure) -> ToolResult:
 _TEXTS: Mapping[ToolFailure, str] = {
     ToolFailure.NOTHING_THERE: "the blade has met nothing",
     ToolFailure.NO_CUP: "the tool has no cup",
-    ToolFailure.OBSTRUCTED: "something stands in front of the object",
+    ToolFailure.OBSTRUCTED: "something stands in front of the object, or on it",
     ToolFailure.NO_PLACE: "the place is taken",
     ToolFailure.NO_BLADE_ROOM: "something stands where the blade goes in",
     ToolFailure.BLOCKED: "the object has something beside it and does not move",

@@ -111,7 +111,7 @@ class LabelledShelf:
     def letters_px(self, number: int, camera: CameraModel) -> float:
         """Return the height of a package's name in an image [px]; 0 beside the image."""
         box = self._boxes[number]
-        middle_m = np.array([box.x_m, box.low_m[1], 0.5 * box.size_m[2]])
+        middle_m = np.array([box.x_m, box.low_m[1], box.bottom_m + 0.5 * box.size_m[2]])
         x_px, y_px = camera.project(middle_m[None])[0]
         if not (0.0 <= x_px < camera.width_px and 0.0 <= y_px < camera.height_px):
             return 0.0
@@ -126,7 +126,7 @@ class LabelledShelf:
         """Return boxes in their own colours, without labels, shape (height, width, 3)."""
         points_m = caster.origin_m + np.nan_to_num(depth_m)[..., None] * caster.rays
         paint = np.array([*(package.base for package in self._packages), WALLS], np.float64)
-        tops = np.array([*(box.size_m[2] for box in self._boxes), np.inf])
+        tops = np.array([*(box.high_m[2] for box in self._boxes), np.inf])
         light = np.where(points_m[..., 2] > tops[segments] - FACE_M, TOP, SIDE)
         light = np.where(segments == NOTHING, 1.0, light) * self._daylight(points_m[..., 1])
         plain: Floats = paint[segments] * light[..., None]

@@ -97,7 +97,7 @@ class ShelfPicturer:
         points_m = caster.origin_m + np.nan_to_num(depth_m)[..., None] * caster.rays
         paint = np.array([*(self._colours[name] for name in names), WALLS], dtype=np.float64)
         fronts = np.array([*(box.low_m[1] for box in boxes), np.inf])
-        tops = np.array([*(box.size_m[2] for box in boxes), np.inf])
+        tops = np.array([*(box.high_m[2] for box in boxes), np.inf])
         light = np.full(segments.shape, SIDE)
         light[points_m[..., 2] > tops[segments] - FACE_M] = TOP
         light[np.abs(points_m[..., 1] - fronts[segments]) < FACE_M] = FRONT

@@ -11,10 +11,11 @@ from executive.core.errors import InputError
 from perception.camera import CameraModel
 from perception.shelf.casting import BoxCaster
 from perception.shelf.rendering import ShelfRenderer
-from perception.shelf.types import Box, Floats, Shelf
+from perception.shelf.types import Bools, Box, Floats, Shelf, stands_on
 from simulation.shelf.arranging import Leaf, shelf_places
 from simulation.shelf.cameras import front_camera
 from simulation.shelf.separating import separate
+from simulation.shelf.stacking import put_on, stacks
 from simulation.shelf.taxonomy import Domain, ShelfObject
 
 # Positions and sizes are whole micrometres, so that scenes are the same wherever they are made.
@@ -34,12 +35,14 @@ class SceneRules:
             the thesis's RAND.
         scale: Factor on sizes; None takes the domain's.
         noise_m: Largest noise of a place at each cut of the shelf.
+        stacked: Share of objects that stand on another one, as far as any can carry them.
     """
 
     count: int = 15
     organisation: float = 1.0
     scale: float | None = None
     noise_m: float = 0.02
+    stacked: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,7 +53,8 @@ class Scene:
         shelf: The shelf.
         names: Names of the objects.
         boxes: Where they stand, in the order of `names`.
-        target: Name of an object that cannot be seen from the camera at all.
+        target: Name of an object that cannot be seen from the camera at all; it stands on the
+            floor, and nothing stands on it.
     """
 
     shelf: Shelf
@@ -62,7 +66,7 @@ class Scene:
     def digest(self) -> str:
         """SHA-256 of the scene in whole micrometres, for holding scenes to their seeds."""
         rows = [
-            (name, *(round(1e6 * value) for value in (box.x_m, box.y_m, *box.size_m)))
+            (name, *(round(1e6 * value) for value in _numbers(box)))
             for name, box in zip(self.names, self.boxes, strict=True)
         ]
         return hashlib.sha256(json.dumps([rows, self.target]).encode()).hexdigest()
@@ -96,7 +100,7 @@ def draw_scene(
         boxes = _stand(things, domain, rules, shelf, rng)
         if boxes is None:
             continue
-        hidden = np.flatnonzero(renderer.visible_shares(boxes) == 0.0)
+        hidden = np.flatnonzero((renderer.visible_shares(boxes) == 0.0) & ~_in_stacks(boxes))
         if len(hidden):
             target = things[int(hidden[rng.integers(len(hidden))])].name
             return Scene(shelf, tuple(thing.name for thing in things), boxes, target)
@@ -125,12 +129,30 @@ def _stand(
         Leaf(index, thing.category, _size(sizes[index])) for index, thing in enumerate(things)
     ]
     meant = shelf_places(leaves, shelf, rules.organisation, rules.noise_m, rng)
-    places = separate(meant, sizes[:, :2], shelf)
+    # Nothing is drawn for shelves without stacks: their seeds give what they have always given.
+    carriers = stacks(meant, sizes, rules.stacked, shelf, rng) if rules.stacked > 0.0 else {}
+    low = np.array([index for index in range(len(sizes)) if index not in carriers])
+    places = separate(meant[low], sizes[low, :2], shelf)
     if places is None:
         return None
-    places = np.round(places, DECIMALS)
-    return tuple(
-        Box(float(x), float(y), leaf.size_m) for (x, y), leaf in zip(places, leaves, strict=True)
+    standing = {
+        index: Box(float(x), float(y), leaves[index].size_m)
+        for index, (x, y) in zip(low.tolist(), np.round(places, DECIMALS), strict=True)
+    }
+    for index, carrier in carriers.items():
+        standing[index] = put_on(leaves[index].size_m, standing[carrier], rng, DECIMALS)
+    return tuple(standing[index] for index in range(len(sizes)))
+
+
+def _numbers(box: Box) -> tuple[float, ...]:
+    numbers = (box.x_m, box.y_m, *box.size_m)
+    return (*numbers, box.bottom_m) if box.bottom_m else numbers
+
+
+def _in_stacks(boxes: Sequence[Box]) -> Bools:
+    """Say which boxes carry another one, or are carried, shape (N,)."""
+    return np.array(
+        [one.bottom_m > 0.0 or any(stands_on(other, one) for other in boxes) for one in boxes]
     )
 
 
@@ -147,6 +169,10 @@ def _check(domain: Domain, rules: SceneRules) -> None:
     if not 0.0 <= rules.organisation <= 1.0:
         raise InputError(
             f"scenes of {domain.name}: organisation: got {rules.organisation:g}; expected 0 to 1"
+        )
+    if not 0.0 <= rules.stacked <= 1.0:
+        raise InputError(
+            f"scenes of {domain.name}: stacked: got {rules.stacked:g}; expected 0 to 1"
         )
     if rules.scale is not None and not 0.0 < rules.scale <= 1.0:
         raise InputError(f"scenes of {domain.name}: scale: got {rules.scale:g}; expected in (0, 1]")

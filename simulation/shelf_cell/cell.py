@@ -5,7 +5,6 @@ from collections.abc import Iterable, Mapping
 import numpy as np
 
 from executive.core.world import StreamMessage
-from perception.camera import CameraModel
 from perception.shelf.types import Shelf
 from robots.descriptions.kinova import kinova_joint_names
 from robots.descriptions.specs import kinova_spec
@@ -16,7 +15,8 @@ from robots.shelf_tool import ToolShape
 from simulation.clock import SimClock
 from simulation.plan_stream import PlanStream
 from simulation.shelf.cameras import front_camera, viewpoint_cameras
-from simulation.shelf.scenes import Scene, SceneRules, draw_scene
+from simulation.shelf.scenario import drawn_scene
+from simulation.shelf.scenes import Scene
 from simulation.shelf.stocking import stock_of
 from simulation.shelf.taxonomy import shipped_domain
 from simulation.shelf_cell.boxes import Matter, weighed
@@ -73,7 +73,7 @@ class ShelfCell:
         scene_rng, matter_rng, force_rng, camera_rng = map(np.random.default_rng, seeds)
         shelf = Shelf()
         self.search_camera = front_camera(shelf, settings.camera.width_px)
-        self.scene: Scene = _scene(wanted, shelf, self.search_camera, scene_rng)
+        self.scene: Scene = drawn_scene(wanted, shelf, self.search_camera, scene_rng)
         self.stock = stock_of(shipped_domain(wanted.domain), self.scene)
         boxes = weighed(
             self.scene.names,
@@ -189,13 +189,6 @@ class ShelfCell:
         if self._scenes.due(now_s):
             held = world.cups.held
             self._scenes.add(now_s, scene_json(world.physics, self._colours, held))
-
-
-def _scene(
-    wanted: ShelfScenario, shelf: Shelf, camera: CameraModel, rng: np.random.Generator
-) -> Scene:
-    rules = SceneRules(wanted.count, wanted.organisation, wanted.scale)
-    return draw_scene(shipped_domain(wanted.domain), rules, rng, shelf, camera)
 
 
 def _shape(tool: ToolConfig) -> ToolShape:

@@ -118,9 +118,11 @@ class ShelfScenario(_Document):
         count: Objects on it.
         organisation: Share of objects that stand where they belong.
         scale: Factor on sizes; the domain's when not given.
+        stacked: Share of objects that stand on another one, where they fit.
     """
 
     domain: str = "pharmacy"
     count: Annotated[int, Field(ge=2, le=60)] = 15
     organisation: Share = 1.0
     scale: Annotated[float, Field(gt=0.0, le=1.0)] | None = None
+    stacked: Share = 0.0

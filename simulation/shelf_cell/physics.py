@@ -222,7 +222,7 @@ class ShelfPhysics:
         self._call("changeDynamics", body, -1, lateralFriction=_BOARD_FRICTION**0.5)
 
     def _add_box(self, box: HeavyBox) -> int:
-        centre_m = (box.box.x_m, box.box.y_m, 0.5 * box.box.size_m[2])
+        centre_m = (box.box.x_m, box.box.y_m, box.box.bottom_m + 0.5 * box.box.size_m[2])
         body = self._add_body(box.box.size_m, box.mass_kg, centre_m, _BOX_GROUP)
         self._call(
             "changeDynamics",

@@ -48,5 +48,5 @@ class PlaceObject(AccountedSkill):
         result = yield from self._do(PutElsewhere(cuboid(thing.box), move.x_m, move.y_m))
         if result.failure is not None:
             return failed(result, move.label)
-        box = thing.box.at(move.x_m, move.y_m)
+        box = thing.box.on_floor(move.x_m, move.y_m)
         return success(belief=self._search.moved(belief, move.label, box, nothing_met()))

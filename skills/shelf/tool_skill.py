@@ -92,7 +92,7 @@ def unseen(label: str, belief: ShelfBelief) -> Outcome:
 
 def cuboid(box: Box) -> Cuboid:
     """Return a box as the tool takes it."""
-    return Cuboid(box.x_m, box.y_m, box.size_m)
+    return Cuboid(box.x_m, box.y_m, box.size_m, box.bottom_m)
 
 
 def nothing_met() -> Floats:

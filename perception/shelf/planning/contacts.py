@@ -75,7 +75,7 @@ def contact_of(move: Move, box: Box, failure: str) -> Floats:
         sign = push_sign(move)
         return contact_beside(box, sign if failure == "push.blocked" else -sign)
     if failure == "suction.no_place":
-        return footprints([box.at(move.x_m, move.y_m)])[0]
+        return footprints([box.on_floor(move.x_m, move.y_m)])[0]
     return contact_before(box)
 
 

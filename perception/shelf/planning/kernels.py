@@ -1,18 +1,21 @@
 """The compiled part of looking ahead: what moves there are, and what each would show.
 
-Everything stands on the floor, and the camera is level. So in one column of the image an object
-hides whatever is behind it up to the elevation of its top, the tangent of the angle above the view,
-and a target shows there when its own elevation is greater than those of all before it. Images are
-needed no more: a few thousand comparisons tell what a move would show. Views that tilt are treated
-as level ones from the same place.
+The camera is level, and everything stands on the floor or on what does. So in one column of the
+image an object hides whatever is behind it up to the elevation of its top, the tangent of the angle
+above the view, and a target shows there when its own elevation is greater than those of all before
+it. Images are needed no more: a few thousand comparisons tell what a move would show. Views that
+tilt are treated as level ones from the same place.
 
-Objects are rows (x low, y low, x high, y high, height) [m]. All kernels live in this one file: the
-compiler's cache looks only at the file of the function that is called.
+Objects are rows (x low, y low, x high, y high, top, bottom) [m]. What stands on another is wholly
+above it, goes along with its pushes, and is moved by the cup alone. All kernels live in this one
+file: the compiler's cache looks only at the file of the function that is called.
 """
 
 import numba
 import numpy as np
 from numpy.typing import NDArray
+
+from perception.shelf.types import LEVEL_M
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -71,6 +74,32 @@ def _overlap(ax: float, ay: float, bx: float, by: float, other: Floats) -> bool:
 
 
 @kernel
+def _beside(other: Floats, bottom: float) -> bool:
+    """Say whether an object may be in the way of what stands at some height.
+
+    On the floor what stands on another one is in the way where that one is.
+    """
+    if bottom > 0.0:
+        return bool(other[4] > bottom + LEVEL_M)
+    return bool(other[5] == 0.0)
+
+
+@kernel
+def _stands_on(upper: Floats, lower: Floats) -> bool:
+    level = upper[5] > 0.0 and abs(upper[5] - lower[4]) <= LEVEL_M
+    return level and _overlap(upper[0], upper[1], upper[2], upper[3], lower)
+
+
+@kernel
+def _laden(boxes: Floats, index: int) -> bool:
+    """Say whether something stands on an object."""
+    for other in range(len(boxes)):
+        if other != index and _stands_on(boxes[other], boxes[index]):
+            return True
+    return False
+
+
+@kernel
 def blade_fits(
     boxes: Floats, index: int, sign: int, met: Floats, width_m: float, reach: Floats
 ) -> bool:
@@ -83,13 +112,9 @@ def blade_fits(
     deep = own[1] + min(reach[OVERLAP], own[3] - own[1])
     if low < -TOUCH_M or high > width_m + TOUCH_M:
         return False
-    for other in range(len(boxes)):
-        if other != index and _overlap(low, -1.0, high, deep, boxes[other]):
-            return False
-    for row in range(len(met)):  # noqa: SIM110 - compiled
-        if _overlap(low, -1.0, high, deep, met[row]):
-            return False
-    return True
+    if own[5] > 0.0:
+        return False
+    return _front_free(boxes, index, 0.0, met, low, high, deep)
 
 
 @kernel
@@ -111,7 +136,7 @@ def room_beside(
     own = boxes[index]
     room = width_m - own[2] if sign > 0 else own[0]
     for other in range(len(boxes)):
-        if other != index:
+        if other != index and _beside(boxes[other], own[5]):
             room = _ahead(own, boxes[other], sign, reach[GAP], room)
     for row in range(len(met)):
         room = _ahead(own, met[row], sign, reach[GAP], room)
@@ -120,11 +145,13 @@ def room_beside(
 
 @kernel
 def _front_free(
-    boxes: Floats, index: int, met: Floats, low: float, high: float, deep: float
+    boxes: Floats, index: int, bottom: float, met: Floats, low: float, high: float, deep: float
 ) -> bool:
-    """Say whether nothing but one object stands before a line along the shelf."""
+    """Say whether nothing but one object stands before a line along the shelf, at some height."""
     for other in range(len(boxes)):
-        if other != index and _overlap(low, -1.0, high, deep, boxes[other]):
+        if other == index or not _beside(boxes[other], bottom):
+            continue
+        if _overlap(low, -1.0, high, deep, boxes[other]):
             return False
     for row in range(len(met)):  # noqa: SIM110 - compiled
         if _overlap(low, -1.0, high, deep, met[row]):
@@ -167,7 +194,7 @@ def moves_from(
     Shapes are (M,), (M,) and (M, 2).
 
     Args:
-        boxes: All objects, shape (B, 5).
+        boxes: All objects, shape (B, 6).
         movable: Which of them may be moved: 1 yes, 2 by pushes alone, 3 by the cup alone, else no.
         met: What is in the way unseen, footprints, shape (M, 4).
         shelf_m: Width and depth of the shelf.
@@ -197,7 +224,9 @@ def moves_from(
                 ends.append((own[0] + sign * room, own[1]))
         if movable[index] == 2 or reach[SUCTION] == 0.0:
             continue
-        if not _front_free(boxes, index, met, own[0], own[2], own[1]):
+        if _laden(boxes, index):
+            continue
+        if not _front_free(boxes, index, own[5], met, own[0], own[2], own[1]):
             continue
         wide, deep = own[2] - own[0], own[3] - own[1]
         columns = max(2, int((shelf_m[0] - wide) / steps_m[1]) + 1)
@@ -210,7 +239,7 @@ def moves_from(
                 place[3] = place[1] + deep
                 if abs(place[0] - own[0]) < 0.01 and abs(place[1] - own[1]) < 0.01:
                     continue
-                if not _front_free(boxes, index, met, place[0], place[2], place[3]):
+                if not _front_free(boxes, index, 0.0, met, place[0], place[2], place[3]):
                     continue
                 if _free_share(floor, cell_m, own, place) >= 0.95:
                     which.append((index, 1))
@@ -228,7 +257,9 @@ def _stopper(boxes: Floats, index: int, sign: int, room: float, gap: float) -> i
     """Return which object stops a push, -1 for the wall or what was met."""
     own = boxes[index]
     for other in range(len(boxes)):
-        if other != index and _ahead(own, boxes[other], sign, gap, np.inf) <= room + TOUCH_M:
+        if other == index or not _beside(boxes[other], own[5]):
+            continue
+        if _ahead(own, boxes[other], sign, gap, np.inf) <= room + TOUCH_M:
             return other
     return -1
 
@@ -245,8 +276,8 @@ def _effort(boxes: Floats, movable: Ints, met: Floats, width_m: float, reach: Fl
     effort = np.full(count, STUCK)
     for index in range(count):
         own = boxes[index]
-        lifted = movable[index] in (1, 3) and reach[SUCTION] > 0.0
-        if lifted and _front_free(boxes, index, met, own[0], own[2], own[1]):
+        lifted = movable[index] in (1, 3) and reach[SUCTION] > 0.0 and not _laden(boxes, index)
+        if lifted and _front_free(boxes, index, own[5], met, own[0], own[2], own[1]):
             effort[index] = MOVES_WELL
         elif movable[index] in (1, 2):
             for side in range(2):
@@ -353,7 +384,7 @@ def assess(
     """Return which poses show, their weight, and the effort to see the others.
 
     Args:
-        boxes: All objects, shape (B, 5).
+        boxes: All objects, shape (B, 6).
         movable: See `moves_from`.
         met: The same.
         width_m: Width of the shelf.
@@ -374,6 +405,28 @@ def assess(
         near, rise, effort, eye, column, depth, top, start, shows, weights, seen
     )
     return seen, shown, behind
+
+
+@kernel
+def _shift(row: Floats, before: Floats, by: Floats) -> None:
+    """Move an object along the floor, or put it there."""
+    row[0], row[2] = before[0] + by[0], before[2] + by[0]
+    row[1], row[3] = before[1] + by[1], before[3] + by[1]
+
+
+@kernel
+def moved_rows(boxes: Floats, index: int, corner: Floats) -> Floats:
+    """Return objects after one of them was moved: what stands on it goes along, shape (B, 6).
+
+    What stood on another one and was moved stands on the floor.
+    """
+    after = boxes.copy()
+    for one in range(len(boxes)):
+        if one == index or _stands_on(boxes[one], boxes[index]):
+            _shift(after[one], boxes[one], corner - boxes[index, :2])
+    after[index, 4] -= after[index, 5]
+    after[index, 5] = 0.0
+    return after
 
 
 @kernel
@@ -401,15 +454,18 @@ def consider(
     seen = np.zeros(len(weights), np.int64)
     for number in range(len(moved)):
         index = moved[number]
-        own = boxes[index]
-        after[index, 0], after[index, 1] = corners[number, 0], corners[number, 1]
-        after[index, 2] = corners[number, 0] + own[2] - own[0]
-        after[index, 3] = corners[number, 1] + own[3] - own[1]
-        _survey_one(after[index], slopes, eye, near[index], rise[index])
+        for one in range(len(boxes)):
+            if one == index or _stands_on(boxes[one], boxes[index]):
+                _shift(after[one], boxes[one], corners[number] - boxes[index, :2])
+                if one == index:
+                    after[one, 4], after[one, 5] = boxes[one, 4] - boxes[one, 5], 0.0
+                _survey_one(after[one], slopes, eye, near[one], rise[one])
         effort = _effort(after, movable, met, width_m, reach)
         shown[number], behind[number] = _assess(
             near, rise, effort, eye, column, depth, top, start, shows, weights, seen
         )
-        after[index] = own
-        _survey_one(own, slopes, eye, near[index], rise[index])
+        for one in range(len(boxes)):
+            if one == index or _stands_on(boxes[one], boxes[index]):
+                after[one] = boxes[one]
+                _survey_one(after[one], slopes, eye, near[one], rise[one])
     return shown, behind

@@ -12,13 +12,13 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from perception.camera import CameraModel
-from perception.shelf.planning.kernels import Ints, assess, consider, moves_from
+from perception.shelf.planning.kernels import Ints, assess, consider, moved_rows, moves_from
 from perception.shelf.planning.lifting import tries
 from perception.shelf.planning.moves import Move, Place, Plan, Push
 from perception.shelf.planning.outlook import COARSE, Grain, outlook, restricted
 from perception.shelf.planning.partings import partings, pushes_of
 from perception.shelf.planning.room import Reach, footprints
-from perception.shelf.types import Bools, Box, Floats, Shelf, Size
+from perception.shelf.types import Bools, Box, Floats, Shelf, Size, stands_on
 
 # Whether an object may be moved, and how; what is out of view may be moved once it is seen.
 FIXED, ANYHOW, BY_PUSH, BY_CUP, UNSEEN = range(5)
@@ -145,17 +145,25 @@ class KernelInputs:
 def kernel_inputs(situation: Situation, depth: Depth | None = None) -> KernelInputs:
     """Return a situation as compiled code takes it."""
     shelf, reach = situation.shelf, situation.reach
-    rows = [(*box.low_m[:2], *box.high_m[:2], box.size_m[2]) for box in situation.boxes]
+    boxes = situation.boxes
+    rows = [
+        (*box.low_m[:2], *box.high_m[:2], box.high_m[2], _bottom_m(box, boxes)) for box in boxes
+    ]
     floor = np.zeros(np.array(situation.floor.shape) + 1)
     floor[1:, 1:] = situation.floor.cumsum(axis=0).cumsum(axis=1)
     return KernelInputs(
-        boxes=np.array(rows, dtype=np.float64).reshape(-1, 5),
+        boxes=np.array(rows, dtype=np.float64).reshape(-1, 6),
         met=np.ascontiguousarray(situation.met, dtype=np.float64).reshape(-1, 4),
         shelf_m=np.array([shelf.width_m, shelf.depth_m]),
         reach=np.array([reach.blade_m, reach.overlap_m, reach.gap_m, float(reach.suction)]),
         steps_m=np.array((depth or Depth()).steps_m),
         floor=floor,
     )
+
+
+def _bottom_m(box: Box, boxes: Sequence[Box]) -> float:
+    """Return how high a box stands; one that stands on nothing known is in the way of all below."""
+    return box.bottom_m if any(stands_on(box, other) for other in boxes) else 0.0
 
 
 def named_move(situation: Situation, index: int, by_cup: bool, corner: Floats) -> Move:
@@ -176,7 +184,7 @@ def open_moves(situation: Situation, boxes: Floats, moves: tuple[Ints, Ints, Flo
 
     Args:
         situation: What is known.
-        boxes: Where objects stand before the moves, shape (B, 5).
+        boxes: Where objects stand before the moves, shape (B, 6).
         moves: As `kernels.moves_from` has them.
 
     Returns:
@@ -241,8 +249,13 @@ class _Search:
         return min([*done, *beam], key=lambda branch: branch.cost, default=None)
 
     def _by_parting(self) -> _Branch | None:
-        """Return the pushes of many objects that are the least toil, where any show anything."""
+        """Return the pushes of many objects that are the least toil, where any show anything.
+
+        Of stacks no partings are known.
+        """
         situation, inputs = self._situation, self._inputs
+        if inputs.boxes[:, 5].any():
+            return None
         likely = np.argsort(-self._weights, kind="stable")[:PARTED]
         ways = partings(
             inputs.boxes,
@@ -342,9 +355,7 @@ class _Search:
         again: float = 0.0,
     ) -> _Branch:
         index, by_cup, corner = move
-        boxes = branch.boxes.copy()
-        boxes[index, 2:4] += corner - boxes[index, :2]
-        boxes[index, :2] = corner
+        boxes = moved_rows(branch.boxes, index, np.asarray(corner, dtype=np.float64))
         unfound = max(branch.unfound - shown, 0.0)
         named = _named(self._situation.labels[index], branch.boxes[index], by_cup, corner)
         return _Branch(

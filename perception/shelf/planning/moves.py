@@ -42,7 +42,7 @@ Move = Push | Place
 def moved_box(move: Move, box: Box) -> Box:
     """Return where an object would stand after a move."""
     if isinstance(move, Place):
-        return box.at(move.x_m, move.y_m)
+        return box.on_floor(move.x_m, move.y_m)
     return box.at(box.x_m + move.shift_m, box.y_m)
 
 

@@ -47,7 +47,7 @@ def partings(
     """Yield ways to see a target that stands in one of some poses, different ones.
 
     Args:
-        boxes: Objects, rows (x low, y low, x high, y high, height), shape (B, 5).
+        boxes: Objects that stand on the floor, as `kernels` has them, shape (B, 6).
         free: Which of them can be pushed, shape (B,).
         met: Footprints of what is in the way unseen, shape (M, 4).
         target_m: Width and depth of the target, which hidden things are pushed against, too.
@@ -58,7 +58,7 @@ def partings(
         grain: How finely it is judged what shows.
     """
     walls = np.hstack([met, np.zeros((len(met), 1))])
-    things = np.vstack([boxes, walls, np.zeros((1, 5))])
+    things = np.vstack([boxes[:, :5], walls, np.zeros((1, 5))])
     may_move = np.zeros(len(things), dtype=np.bool_)
     may_move[: len(boxes)] = free
     half = 0.5 * np.array(target_m)
@@ -87,7 +87,7 @@ def pushes_of(
 
     Args:
         parting: Where they are to be.
-        boxes: Where they are, shape (B, 5).
+        boxes: Where they are, shape (B, 6).
         seen: Which are in view; none of the others goes first, shape (B,).
         met: Footprints of what is in the way unseen, shape (M, 4).
         width_m: Width of the shelf.
@@ -97,7 +97,7 @@ def pushes_of(
         The pushes; none where the blade does not come in beside one of them, or none can begin.
     """
     now = boxes.copy()
-    things = np.vstack([boxes, np.hstack([met, np.zeros((len(met), 1))])])
+    things = np.vstack([boxes[:, :5], np.hstack([met, np.zeros((len(met), 1))])])
     half_m, middle_m = 0.5 * (things[:, 2] - things[:, 0]), 0.5 * (things[:, 0] + things[:, 2])
     one_way = least_apart(things, half_m, middle_m, reach[GAP])
     apart = np.maximum(one_way, one_way.T)

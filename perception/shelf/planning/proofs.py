@@ -61,11 +61,15 @@ def pushes_may_show(
 def hopeless(situation: Situation) -> bool:
     """Say whether no pushes bring any place of a target to show; what is unseen only adds to that.
 
+    Of shelves with stacks nothing is proved.
+
     Args:
         situation: What is known; objects are taken to be smaller by what they are known to.
     """
     inputs, target = kernel_inputs(situation), 0.5 * np.array(situation.target_m[:2])
-    things = np.vstack([inputs.boxes + SMALLER, np.zeros((1, 5))])
+    if inputs.boxes[:, 5].any():
+        return False
+    things = np.vstack([inputs.boxes[:, :5] + SMALLER, np.zeros((1, 5))])
     stays = np.append(situation.movable == FIXED, True)
     likely = np.argsort(-situation.weights, kind="stable")
     likely = likely[situation.weights[likely] > LEAST_WEIGHT * situation.weights.max()]

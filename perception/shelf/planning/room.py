@@ -10,10 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from perception.shelf.types import Bools, Box, Floats, Shelf
+from perception.shelf.types import TOUCH_M, Bools, Box, Floats, Shelf
 
-# Objects that touch do not collide.
-TOUCH_M = 1e-6
 # Somewhere before the shelf.
 OUTSIDE_M = -1.0
 

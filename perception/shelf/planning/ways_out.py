@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from perception.shelf.planning.kernels import moves_from
+from perception.shelf.planning.kernels import moved_rows, moves_from
 from perception.shelf.planning.looking_ahead import (
     KernelInputs,
     Situation,
@@ -93,8 +93,7 @@ def _children(
     helps &= open_moves(situation, before.boxes, (moved, by_cup, corners))
     for pick in np.flatnonzero(helps):
         index, corner = int(moved[pick]), corners[pick]
-        boxes = before.boxes.copy()
-        boxes[index, :4] = np.hstack([corner, corner + rows[index, 2:] - rows[index, :2]])
+        boxes = moved_rows(before.boxes, index, corner)
         far_m = float(np.abs(corner - rows[index, :2]).sum())
         now_blocked = overlapping(lane, boxes[:, :4]) & (situation.movable != 0)
         yield _Sequence(

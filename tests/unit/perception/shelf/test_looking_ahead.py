@@ -10,6 +10,7 @@ from perception.shelf.planning.kernels import assess, moves_from
 from perception.shelf.planning.lifting import slip_chance, tries
 from perception.shelf.planning.looking_ahead import (
     ANYHOW,
+    BY_CUP,
     FIXED,
     Situation,
     kernel_inputs,
@@ -221,3 +222,26 @@ def test_heavy_things_slip_and_are_pushed_where_that_is_as_good():
     front, target = Box(0.4, 0.06, (0.12, 0.12, 0.16)), Box(0.4, 0.25, SMALL)
     weak = look_ahead(situation([front], target, Reach(lift_kg=0.6, lift_nm=0.4)))
     assert isinstance(weak.moves[0], Push)
+
+
+def test_what_stands_on_another_goes_first_and_the_other_one_then():
+    low, upper = Box(0.4, 0.06, (0.1, 0.08, 0.1)), Box(0.4, 0.06, SMALL, 0.1)
+    walls = [Box(0.225, 0.06, (0.24, 0.1, 0.2)), Box(0.575, 0.06, (0.24, 0.1, 0.2))]
+    target = Box(0.4, 0.25, (0.05, 0.05, 0.12))
+    made = situation(
+        [low, upper, *walls], target, movable=[ANYHOW, BY_CUP, FIXED, FIXED],
+        labels=("low", "upper", "left", "right"),
+    )  # fmt: skip
+    plan = look_ahead(made, grain=COARSE.showing(0.5))
+    assert [move.label for move in plan.moves] == ["upper", "low"]
+    assert all(isinstance(move, Place) for move in plan.moves)
+    assert plan.finds == pytest.approx(1.0)
+
+
+def test_a_pushed_object_takes_along_what_stands_on_it_and_shows_what_both_hid():
+    low, upper = Box(0.4, 0.1, WIDE), Box(0.4, 0.1, SMALL, WIDE[2])
+    target = Box(0.4, 0.25, (0.05, 0.05, 0.2))
+    made = situation([low, upper], target, Reach(suction=False), movable=[ANYHOW, BY_CUP])
+    plan = look_ahead(made, grain=COARSE.showing(0.9))
+    assert [move.label for move in plan.moves] == ["box 0"]
+    assert plan.finds == pytest.approx(1.0)
