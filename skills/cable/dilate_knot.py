@@ -16,8 +16,9 @@ from perception.cable.types import Crossing, Knot, Trace
 from perception.camera import CameraFrame
 from robots.interfaces import Arm, DualArm, Floats, MotionFailure, TcpGoal
 from skills.cable.grasping import CLEARANCE_M, LIFT_M, carried, grasp_goal
+from skills.cable.imagining import best_imagined
 from skills.cable.knot_sites import REACH_X_M, REACH_Y_M, Pair, given_pairs, searched_pairs
-from skills.cable.laying_out import Ends, Pull, best_places, crossings_of, outcome_cost
+from skills.cable.laying_out import Ends, Pull, best_places, crossings_of
 from skills.cable.policies import HoldAt
 from skills.motion.arm_skill import MOTION_REASONS, ArmSkill, MotionSteps
 from skills.motion.goals import above
@@ -201,25 +202,14 @@ class DilateKnot(ArmSkill):
                     yield from self._with_places(without[-1], unlike(ends_m)[:MOST_TRIES])
             if len(without) + refused == most:
                 break
-        for grip, ends in self._best_imagined(seen, without):
-            yield from self._with_places(grip, [ends])
+        if foreseen and self._foresight is not None:
+            pulls = [(grip.pull, unlike(grip.ends_m)[:IMAGINED_PLACES]) for grip in without]
+            for found in best_imagined(self._foresight, pulls, seen.over):
+                grip = replace(without[found.pull], foreseen=found.crossings)
+                yield from self._with_places(grip, [found.ends])
         yield from without
         if refused and not without:
             yield REFUSED
-
-    def _best_imagined(self, seen: "_Seen", grips: Sequence["_Grip"]) -> list[tuple["_Grip", Ends]]:
-        """Return ways to hold, and places to go to, that should leave the cable best, in order."""
-        foresight = self._foresight
-        if foresight is None:
-            return []
-        costs, choices = list[float](), list[tuple[_Grip, Ends]]()
-        for grip in grips:
-            for ends in unlike(grip.ends_m)[:IMAGINED_PLACES]:
-                nodes_m = foresight.after(grip.pull.line_m, seen.over, grip.pull.hands(ends))
-                if nodes_m is not None:
-                    costs.append(outcome_cost(nodes_m))
-                    choices.append((replace(grip, foreseen=crossings_of(nodes_m[:, :2])), ends))
-        return [choices[k] for k in np.argsort(costs, kind="stable").tolist()]
 
     def _with_places(self, grip: "_Grip", places: Sequence[Ends]) -> Iterator["_Grip"]:
         """Yield the way to hold with the first places to go to that both hands can make."""

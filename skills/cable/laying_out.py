@@ -12,7 +12,6 @@ from itertools import product
 import numpy as np
 
 from perception.cable.polyline import arc_lengths, point_at
-from perception.cable.topology import classify_curve
 from perception.cable.topology.curve import self_intersections
 from perception.cable.types import ImaginedHand
 from robots.interfaces import Floats
@@ -40,8 +39,6 @@ RIM_M = 0.03
 TAIL_COST, LEFT_COST, BESIDE_COST = 20.0, 4.0, 0.15
 # In crossings: a step of cable that would come to lie off the table.
 OFF_COST = 1.0
-# In crossings: one of those that a knot cannot do without.
-KNOT_COST = 3.0
 # A tail is out when so much more has been drawn: connectors, and cable that was not quite straight.
 MARGIN_M = 0.06
 BESIDE_M = 0.02
@@ -130,17 +127,6 @@ def tangle_cost(line_m: Floats) -> float:
     apart = np.abs(np.subtract.outer(np.arange(len(line_m)), np.arange(len(line_m)))) > 4
     beside = float(((gaps_m < BESIDE_M) & apart).sum()) / 2.0
     return crossings + BESIDE_COST * beside + OFF_COST * _steps_off(line_m)
-
-
-def outcome_cost(nodes_m: Floats) -> float:
-    """Return how bad it is when a cable lies like this: its knot, and how hard it is to see.
-
-    Args:
-        nodes_m: Points along it, shape (N, 3).
-    """
-    arcs_m = arc_lengths(nodes_m)
-    seen = _piece(nodes_m[:, :2], arcs_m, 0.0, float(arcs_m[-1]))
-    return KNOT_COST * classify_curve(nodes_m).reduced_crossings + tangle_cost(seen)
 
 
 def _steps_off(line_m: Floats) -> float:
