@@ -8,6 +8,7 @@ tail as much shorter. Where this crosses itself seldom, and little tail is left 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import product
+from math import hypot
 
 import numpy as np
 
@@ -141,17 +142,17 @@ def followed(line_m: Floats, to_m: Floats) -> Floats:
     Every point follows the one before it as soon as that is too far away (a tractrix), as a
     cable does that friction holds everywhere.
     """
-    line = [np.array(point) for point in line_m]
-    lengths = np.linalg.norm(np.diff(line_m, axis=0), axis=1)
+    xs, ys = line_m.T.tolist()  # plain numbers: each point waits for the one before it
+    lengths = np.linalg.norm(np.diff(line_m, axis=0), axis=1).tolist()
     for share in np.arange(1, PARTS + 1) / PARTS:
-        line[0] = (1.0 - share) * line_m[0] + share * to_m
-        for k, length in enumerate(lengths.tolist(), start=1):
-            back = line[k] - line[k - 1]
-            gap = float(np.hypot(back[0], back[1]))
+        xs[0], ys[0] = ((1.0 - share) * line_m[0] + share * to_m).tolist()
+        for k, length in enumerate(lengths, start=1):
+            x, y = xs[k] - xs[k - 1], ys[k] - ys[k - 1]
+            gap = hypot(x, y)
             if gap <= length:
                 break
-            line[k] = line[k - 1] + back * (length / gap)
-    return np.array(line)
+            xs[k], ys[k] = xs[k - 1] + x * (length / gap), ys[k - 1] + y * (length / gap)
+    return np.column_stack([xs, ys])
 
 
 def _piece(line_m: Floats, arcs: Floats, begin_m: float, end_m: float) -> Floats:
