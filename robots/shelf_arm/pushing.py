@@ -1,7 +1,7 @@
 """A push along the shelf: the blade goes in beside an object, pushes by feel, and leaves."""
 
 from collections.abc import Generator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -47,12 +47,15 @@ def push(
 ) -> Generator[None, None, ToolResult]:
     """Push an object; raises `ActionError` where that cannot be, the tool wherever it is then."""
     lane = _lane(motions, shape, action)
-    before_m = -motions.settings.before_m
-    inward = np.array([0.0, lane.tip_m - before_m, 0.0])
-    along = np.array([lane.sign * (lane.gap_m + _way_m(motions, action)), 0.0, 0.0])
-    start = np.array([lane.x_m, before_m, lane.height_m])
-    yield from motions.free_to(start, inward, along)
-    yield from _go_in(motions, action, lane, inward)
+    along = yield from _go_in(motions, action, lane)
+    if along is None:
+        # Sides are known to some millimetres: it may have been the edge of the object itself.
+        lane = _aside(motions, lane, 0.5 * shape.blade_m)
+        yield from motions.retreat()
+        along = yield from _go_in(motions, action, lane)
+    if along is None:
+        text = f"the blade met something at x = {lane.x_m:.3f} m, y = {motions.tip_m()[1]:.3f} m"
+        raise ActionError(ToolFailure.NO_BLADE_ROOM, text)
     feeling = _Feeling(motions, lane, action)
     yield from feeling.push(along)
     back = np.array([-lane.sign * motions.settings.back_off_m, 0.0, 0.0])
@@ -76,6 +79,13 @@ def _lane(motions: ShelfMotions, shape: ToolShape, action: PushAlong) -> _Lane:
     )
 
 
+def _aside(motions: ShelfMotions, lane: _Lane, by_m: float) -> _Lane:
+    """Return a lane farther from the object, as far as the walls let it."""
+    low_m, high_m = CUP_RADIUS_M, motions.shelf.width_m - CUP_RADIUS_M
+    x_m = float(np.clip(lane.x_m - lane.sign * by_m, low_m, high_m))
+    return replace(lane, x_m=x_m, gap_m=lane.gap_m + abs(x_m - lane.x_m))
+
+
 def _way_m(motions: ShelfMotions, action: PushAlong) -> float:
     """Return how far to push: as far as is asked, and not far into a wall."""
     half_m = 0.5 * action.thing.size_m[0]
@@ -86,19 +96,21 @@ def _way_m(motions: ShelfMotions, action: PushAlong) -> float:
 
 
 def _go_in(
-    motions: ShelfMotions, action: PushAlong, lane: _Lane, inward: Floats
-) -> Generator[None, None, None]:
+    motions: ShelfMotions, action: PushAlong, lane: _Lane
+) -> Generator[None, None, Floats | None]:
+    """Bring the blade in beside an object; return the way to push, or None where it has no room."""
     settings = motions.settings
+    before_m = -settings.before_m
+    inward = np.array([0.0, lane.tip_m - before_m, 0.0])
+    along = np.array([lane.sign * (lane.gap_m + _way_m(motions, action)), 0.0, 0.0])
+    start = np.array([lane.x_m, before_m, lane.height_m])
+    yield from motions.free_to(start, inward, along)
     yield from motions.line_by(inward, settings.entry_speed_m_s, settings.entry_force_n)
     if not motions.driver.tripped():
-        return
+        return along
     front_m = action.thing.y_m - 0.5 * action.thing.size_m[1]
     deep_m = float(motions.tip_m()[1]) - CUP_AHEAD_M - front_m
-    if deep_m < 0.5 * (lane.tip_m - CUP_AHEAD_M - front_m):
-        raise ActionError(
-            ToolFailure.NO_BLADE_ROOM,
-            f"the blade met something at x = {lane.x_m:.3f} m, y = {motions.tip_m()[1]:.3f} m",
-        )
+    return along if deep_m >= 0.5 * (lane.tip_m - CUP_AHEAD_M - front_m) else None
 
 
 class _Feeling:

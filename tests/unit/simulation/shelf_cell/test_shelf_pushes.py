@@ -1,5 +1,7 @@
 """Pushes with the blade, by real contact."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from shelf_rigs import Rig, heavy
@@ -78,3 +80,12 @@ def test_sliding_takes_the_force_of_friction() -> None:
         felt.append(-rig.world.driver.force_n()[0])
     sliding = np.median([force for force in felt if force > 0.5])
     assert sliding == pytest.approx(0.35 * 0.8 * 9.81, rel=0.1)
+
+
+def test_blade_that_meets_the_edge_of_the_object_itself_tries_farther_off() -> None:
+    rig = Rig(heavy("a", (0.4, 0.15), BOX_M))
+    seen = replace(rig.thing("a"), x_m=0.4035)
+    result = rig.do(PushAlong(seen, 0.06))
+    assert result.failure is None
+    assert rig.pose("a")[0] == pytest.approx(0.4635, abs=0.003)
+    assert rig.lean("a") > 0.999
