@@ -38,7 +38,7 @@ MOST_PULLS, MOST_TRIES, ALIKE_M = 2, 2, 0.1
 SAME_M = 0.02
 # Where pulls can be imagined, so many pairs that are so far apart along the trace are held against
 # each other, each with so many places out of as many.
-IMAGINED_PULLS, APART_ARC, IMAGINED_PLACES, IMAGINED_OF = 4, 0.015, 3, 60
+IMAGINED_PULLS, APART_ARC, IMAGINED_PLACES, IMAGINED_OF = 4, 0.015, 3, 30
 
 NOWHERE = MotionFailure(
     "motion.unreachable", "ik", "no two sites around the knot are apart and in reach"
