@@ -64,3 +64,10 @@ def test_a_target_of_which_a_sliver_shows_is_uncovered_and_taken_out(tmp_path):
     assert report.outcome == "success"
     assert report.truth["retrieved"]
     assert report.truth["wrong"] == []
+
+
+def test_a_search_that_runs_out_of_moves_says_so_and_claims_nothing(tmp_path):
+    report = searched(tmp_path, 5, {"count": 15}, {"moves": 0}).report
+    assert report.outcome == "failure"
+    assert "search.ended" in report.reason
+    assert not report.claim["found"]
