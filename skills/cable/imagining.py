@@ -11,8 +11,8 @@ from perception.cable.topology import classify_curve
 from robots.interfaces import Floats
 from skills.cable.laying_out import STEP_M, Ends, Pull, crossings_of, tangle_cost
 
-# In crossings: one of those that a knot cannot do without, and a metre of tail left to draw. Without
-# the latter a bowline with tails of 1 m was pulled to and fro; twice as much made bundles.
+# In crossings: one of those that a knot cannot do without, and a metre of tail left to draw.
+# Without the latter a bowline with tails of 1 m was pulled to and fro; twice as much made bundles.
 KNOT_COST, TAIL_COST = 3.0, 10.0
 # Cable so near to where a hand has gone lies in it.
 IN_HAND_M = 0.03
