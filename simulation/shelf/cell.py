@@ -34,10 +34,11 @@ class ShelfTruth:
     """How a search has ended.
 
     Attributes:
-        target: What was to be found.
+        target: What the cell's order is, which a mission may be told to do without.
         found: Whether it was taken out, or can be seen from the middle viewpoint.
         retrieved: Whether it was taken out.
-        wrong: What else was taken out.
+        taken: All that was taken out.
+        wrong: What of that is not the cell's order.
         toppled: How many objects fell over.
         disorder_m: How far objects stand from where they stood at first, on average.
     """
@@ -45,6 +46,7 @@ class ShelfTruth:
     target: str
     found: bool
     retrieved: bool
+    taken: tuple[str, ...]
     wrong: tuple[str, ...]
     toppled: int
     disorder_m: float
@@ -260,6 +262,7 @@ class KinematicShelfCell:
             target=target,
             found=retrieved or seen,
             retrieved=retrieved,
+            taken=taken,
             wrong=tuple(name for name in taken if name != target),
             toppled=self.tool.toppled,
             disorder_m=round(float(np.mean(away)), 4) if away else 0.0,

@@ -20,11 +20,12 @@ class ShelfTruth:
     """How a search has ended, and how the shelf stands.
 
     Attributes:
-        target: What was to be found.
+        target: What the cell's order is, which a mission may be told to do without.
         found: Whether it was taken out, or can be seen from the middle viewpoint.
         visible_share: How much of it shows from there, in [0, 1].
         retrieved: Whether it stands on the counter.
-        wrong: What else stands there.
+        taken: All that stands there.
+        wrong: What of that is not the cell's order.
         toppled: How many boxes no longer stand as they stood.
         disorder_m: How far boxes in the shelf are from where they were at first, on average.
         toppled_names: Which boxes those are.
@@ -36,6 +37,7 @@ class ShelfTruth:
     found: bool
     visible_share: float
     retrieved: bool
+    taken: tuple[str, ...]
     wrong: tuple[str, ...]
     toppled: int
     disorder_m: float
@@ -72,6 +74,7 @@ def shelf_truth(scene: Scene, poses: Floats, shares: Floats) -> ShelfTruth:
         found=bool(outside[which] or shares[which] > 0.0),
         visible_share=round(float(shares[which]), 4),
         retrieved=bool(outside[which]),
+        taken=tuple(taken),
         wrong=tuple(name for name in taken if name != scene.target),
         toppled=int(leaning.sum()),
         disorder_m=round(float(away_m.mean()), 4) if len(away_m) else 0.0,
