@@ -7,15 +7,15 @@ import numpy as np
 
 from perception.cable.interfaces import Foresight
 from perception.cable.polyline import arc_lengths, point_at
-from perception.cable.topology import classify_curve
+from perception.cable.topology import Knottedness, classify_curve
 from robots.interfaces import Floats
 from skills.cable.laying_out import STEP_M, Ends, Pull, crossings_of, tangle_cost
 
-# In crossings: one of those that a knot cannot do without, and a metre of tail left to draw.
-# Without the latter a bowline with tails of 1 m was pulled to and fro; twice as much made bundles.
-KNOT_COST, TAIL_COST = 3.0, 10.0
-# Cable so near to where a hand has gone lies in it.
-IN_HAND_M = 0.03
+# In crossings: that there is a knot, and a metre of tail that is left to draw out of it. A pull
+# draws some 0.4 m and takes ten seconds, about as long as to see through ten crossings more.
+KNOT_COST, TAIL_COST = 5.0, 20.0
+# A tail is measured in steps of so many nodes; less cable than this has no knot.
+STRIDES, LEAST_NODES = (32, 8, 2), 8
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -60,35 +60,45 @@ def _imagined(
             nodes_m = foresight.after(pull.line_m, over, pull.hands(ends))
             if nodes_m is not None:
                 crossings = crossings_of(nodes_m[:, :2])
-                cost = outcome_cost(nodes_m, tail_left_m(pull, ends, nodes_m))
-                yield Imagined(number, ends, crossings, cost)
+                yield Imagined(number, ends, crossings, outcome_cost(nodes_m))
 
 
-def tail_left_m(pull: Pull, ends: Ends, nodes_m: Floats) -> float:
-    """Return how much of the tail is still to be drawn after a pull.
-
-    Args:
-        pull: What was held.
-        ends: Where the hands have gone.
-        nodes_m: Points along the cable then, shape (N, 3).
-    """
-    if not pull.slides(ends):
-        return pull.left_m(ends)
-    gaps_m = np.linalg.norm(nodes_m[:, :2] - ends[0], axis=1)
-    node = int(gaps_m.argmin())
-    # Where no cable lies in the first hand, its end has slipped through.
-    return float(arc_lengths(nodes_m)[node]) if gaps_m[node] < IN_HAND_M else 0.0
-
-
-def outcome_cost(nodes_m: Floats, tail_m: float) -> float:
+def outcome_cost(nodes_m: Floats) -> float:
     """Return how bad it is when a cable lies like this: its knot, and how hard it is to see.
 
     Args:
         nodes_m: Points along it, shape (N, 3).
-        tail_m: How much of the tail is still to be drawn out of the knot, if there is one.
     """
     arcs_m = arc_lengths(nodes_m)
     steps = max(round(float(arcs_m[-1]) / STEP_M), 1)
     seen_m = point_at(nodes_m[:, :2], arcs_m, np.linspace(0.0, float(arcs_m[-1]), steps + 1))
-    knot = classify_curve(nodes_m).reduced_crossings
-    return (KNOT_COST * knot + TAIL_COST * tail_m if knot else 0.0) + tangle_cost(seen_m)
+    tail_m = shorter_tail_m(nodes_m)
+    return (0.0 if tail_m is None else KNOT_COST + TAIL_COST * tail_m) + tangle_cost(seen_m)
+
+
+def shorter_tail_m(nodes_m: Floats) -> float | None:
+    """Return how much cable must be drawn out of a knot at least to undo it; None for no knot.
+
+    Args:
+        nodes_m: Points along the cable, shape (N, 3).
+    """
+    if not _is_knotted(nodes_m):
+        return None
+    tails_m = []
+    for line_m in (nodes_m, nodes_m[::-1]):
+        free = _free_nodes(line_m)
+        tails_m.append(float(arc_lengths(line_m[: free + 1])[-1]))
+    return min(tails_m)
+
+
+def _free_nodes(nodes_m: Floats) -> int:
+    """Return about how many nodes at the beginning can be cut off and leave the knot."""
+    free = 0
+    for step in STRIDES:
+        while free + step < len(nodes_m) - LEAST_NODES and _is_knotted(nodes_m[free + step :]):
+            free += step
+    return free
+
+
+def _is_knotted(nodes_m: Floats) -> bool:
+    return classify_curve(nodes_m).state is not Knottedness.UNKNOT

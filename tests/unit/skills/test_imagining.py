@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from skills.cable.imagining import outcome_cost, tail_left_m
-from skills.cable.laying_out import Pull
+from skills.cable.imagining import KNOT_COST, outcome_cost, shorter_tail_m
 
 STRAIGHT_M = np.column_stack([np.linspace(-0.4, 0.4, 81), np.zeros((81, 2))])
 
@@ -17,21 +16,30 @@ def trefoil():
     return np.column_stack([across, -0.02 * np.sin(3 * turn)])
 
 
+def with_tails(first_m, last_m):
+    """Return an overhand knot with straight tails of 1 cm steps, shape (N, 3)."""
+    knot = trefoil()
+    ways = knot[0] - knot[1], knot[-1] - knot[-2]
+    first, last = (
+        0.01 * np.arange(1, round(length_m / 0.01) + 1)[:, None] * way / np.linalg.norm(way)
+        for length_m, way in zip((first_m, last_m), ways, strict=True)
+    )
+    return np.vstack([(knot[0] + first)[::-1], knot, knot[-1] + last])
+
+
 def test_a_knot_is_worse_than_none_and_a_long_tail_worse_than_a_short_one():
-    knotted = trefoil()
-    assert outcome_cost(knotted, 0.0) > outcome_cost(STRAIGHT_M, 0.0) + 3.0
-    assert outcome_cost(knotted, 0.5) > outcome_cost(knotted, 0.1) > outcome_cost(knotted, 0.0)
-    assert outcome_cost(STRAIGHT_M, 0.5) == outcome_cost(STRAIGHT_M, 0.0)
+    costs = [outcome_cost(with_tails(first_m, 0.4)) for first_m in (0.05, 0.15, 0.3)]
+    assert costs == sorted(costs)
+    assert costs[0] > outcome_cost(STRAIGHT_M) + KNOT_COST
+    assert outcome_cost(STRAIGHT_M) == 0.0
 
 
-@pytest.mark.parametrize("drawn_m", [0.0, 0.1, 0.25])
-def test_the_tail_is_what_lies_before_the_hand_that_lets_it_slide(drawn_m):
-    pull = Pull(STRAIGHT_M[:, :2], 0.3, 0.5)
-    ends = STRAIGHT_M[int(30 - drawn_m * 100), :2], np.array([0.5, 0.3])
-    assert pull.slides(ends)
-    assert tail_left_m(pull, ends, STRAIGHT_M) == pytest.approx(0.3 - drawn_m, abs=0.01)
-
-
-def test_no_tail_is_left_when_the_cable_has_slipped_out_of_the_hand():
-    pull = Pull(STRAIGHT_M[:, :2], 0.3, 0.5)
-    assert tail_left_m(pull, (np.array([-0.45, 0.3]), np.array([0.4, 0.0])), STRAIGHT_M) == 0.0
+@pytest.mark.parametrize("turned", [False, True])
+def test_the_tail_to_draw_grows_with_the_shorter_tail_alone(turned):
+    short, longer, other = (
+        shorter_tail_m(with_tails(*(tails[::-1] if turned else tails)))
+        for tails in ((0.1, 0.4), (0.2, 0.4), (0.1, 0.5))
+    )
+    assert longer - short == pytest.approx(0.1, abs=0.03)
+    assert other == pytest.approx(short, abs=0.03)
+    assert shorter_tail_m(STRAIGHT_M) is None
