@@ -86,6 +86,8 @@ def _by_variant(records: Sequence[RunRecord]) -> dict[int, list[RunRecord]]:
 
 
 def _failures(records: Sequence[RunRecord], folder: Path) -> Iterator[Text]:
+    # In the order in which they were begun: they end in any.
+    records = sorted(records, key=lambda one: (one.seed, one.variant))
     failed = [one for one in records if one.outcome != "success"]
     for one in failed[:_SHOWN_FAILURES]:
         where = f"  {folder / one.recording}" if one.recording else ""

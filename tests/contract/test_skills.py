@@ -9,7 +9,7 @@ from executive.core.skill import PausePolicy, Skill, device_types, input_ports
 
 EVERY = [pytest.param(skills().get(name), id=name) for name in skills()]
 DEVICES = {
-    *("arms", "camera", "clock", "driver", "processes", "rng", "vision", "worker"),
+    *("arms", "camera", "clock", "driver", "foresight", "processes", "rng", "vision", "worker"),
     *("detector", "search", "stock", "tool"),
 }
 

@@ -146,7 +146,7 @@ def test_no_body_breaks_it(client, service, body):
     answer = client.post("/missions", content=text, headers={"content-type": "application/json"})
     assert answer.status_code in (202, 400, 409, 422)
     assert answer.status_code == 202 or answer.json()["error"]
-    if answer.status_code == 202:
+    if answer.status_code == 202 and answer.json()["state"] != "withdrawn":  # the key came before
         assert client.delete(f"/missions/{answer.json()['id']}").json()["state"] == "withdrawn"
 
 
