@@ -3,17 +3,18 @@
 A1: loose knots of 35 to 40 cm. A2: dense ones of 5 to 10 cm. A3: the same shapes of any size,
 over and under such that nothing is knotted. The rest of the cable lies across itself and the
 knot as it falls. What is true is said by knot theory about the line in space; a scene in which
-that is not what was meant is drawn anew. Scenes are drawn by the training's renderer, or laid
-by the physics and seen by the camera of the table cell.
+that is not what was meant is drawn anew. Scenes are drawn by the training's renderer in any
+look or in the thesis's own, or laid by the physics and seen by the camera of the table cell.
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.knot_cores import knot_core
+from benchmarks.knot_look import thesis_look
 from benchmarks.knot_truth import (
     first_undercrossings,
     is_knotted,
@@ -24,7 +25,7 @@ from benchmarks.knot_truth import (
 from benchmarks.laying import CONFIG, WIDTH_M, Core, laid, span
 from perception.cable.topology import curve_crossings
 from perception.camera import GreyImage
-from perception.training.scenes import Scene, lay_scene
+from perception.training.scenes import Scene, SceneConfig, lay_scene
 from robots.placement import TABLE_SIZE_M
 from simulation.cable.configurations import settle
 from simulation.cable.knots import TEMPLATES, KnotName, evenly
@@ -103,7 +104,16 @@ def drawn(tier: str, number: int, seed: int) -> KnotScene:
     return next(_drawn(rng, tier, knot))
 
 
-def _drawn(rng: np.random.Generator, tier: str, knot: KnotName) -> Iterator[KnotScene]:
+def as_in_thesis(tier: str, number: int, seed: int) -> KnotScene:
+    """Return a scene of a tier as `drawn`, but in the look that the thesis measured on."""
+    rng = np.random.default_rng([SEED, seed, TIERS.index(tier), number, 2])
+    config = replace(CONFIG, look=thesis_look(rng))
+    return next(_drawn(rng, tier, KNOTS[number % len(KNOTS)], config))
+
+
+def _drawn(
+    rng: np.random.Generator, tier: str, knot: KnotName, config: SceneConfig = CONFIG
+) -> Iterator[KnotScene]:
     """Yield scenes of a tier.
 
     Raises:
@@ -115,7 +125,7 @@ def _drawn(rng: np.random.Generator, tier: str, knot: KnotName) -> Iterator[Knot
             continue
         lines, known = found
         first, last = span(core, lines[0])
-        scene = lay_scene(rng, lines, CONFIG, known)
+        scene = lay_scene(rng, lines, config, known)
         seen = KnotScene(
             tier, knot, scene.image, scene.width_px, _nodes_px(scene), (float(first), float(last))
         )

@@ -90,11 +90,13 @@ class ImaginedHand:
         role: Whether it holds the cable, or lets it slide.
         arc: Arc position where it takes it, in [0, 1].
         to_m: Where on the table it goes with it, shape (2,).
+        lets_go: Share of its way after which it opens and stays; 1 for at its end.
     """
 
     role: Literal["pinch", "cage"]
     arc: float
     to_m: Points
+    lets_go: float = 1.0
 
 
 @dataclass(frozen=True, slots=True)

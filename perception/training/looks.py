@@ -2,7 +2,8 @@
 
 Three styles are mixed. `photograph` is cloth, light and lens of a real table; `shaded` is what
 simulators of robots draw, round cables on bare or chequered ground; `plain` is flat colour as
-plots and simple renderers have it, with borders that may be jagged.
+plots and simple renderers have it, with borders that may be jagged. `faceted` is only drawn where
+it is asked for: pieces with flat sides, each as bright as it faces the light.
 """
 
 from collections.abc import Callable, Sequence
@@ -10,7 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-STYLES = {"photograph": 0.64, "shaded": 0.18, "plain": 0.18}
+STYLES = {"photograph": 0.64, "shaded": 0.18, "plain": 0.18, "faceted": 0.0}
 # Cables and tables differ at least this much [grey values], after gamma and gradients, too.
 LEAST_CONTRAST = 22.0
 
@@ -37,6 +38,8 @@ class CableLook:
         outline: How much darker its border is.
         bead: How much darker the joints of its pieces are, as simulated chains have them.
         bead_period: Length of a piece.
+        facing: Share of its brightness that sides lose as they turn away from the light.
+        facets: How many flat sides half of it has, 0 for a round one.
     """
 
     brightness: float
@@ -56,6 +59,8 @@ class CableLook:
     outline: float = 0.0
     bead: float = 0.0
     bead_period: float = 1.5
+    facing: float = 0.0
+    facets: int = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -222,6 +227,8 @@ def _table(rng: np.random.Generator, style: str, level: float, cable: float) -> 
     if style == "shaded":
         texture, chequered = _some(rng, 0.35, 0.03, 0.2), _chance(rng, 0.3)
         return Table(level, cable, texture, chequered, False, clutter)
+    if style == "faceted":
+        return Table(level, cable, chequered=_chance(rng, 0.3))
     return Table(level, cable, clutter=clutter if _chance(rng, 0.4) else 0)
 
 
@@ -229,6 +236,9 @@ def _light(rng: np.random.Generator, style: str) -> Light:
     light_rad, soft = rng.uniform(0.0, 2.0 * np.pi), _some(rng, 0.5, 0.15, 1.1)
     if style == "plain":
         return Light(light_rad, gradient=_some(rng, 0.2, 0.05, 0.3))
+    if style == "faceted":
+        slant = abs(rng.normal(0.0, 0.8))
+        return Light(light_rad, slant=slant, shadow=_some(rng, 0.5, 0.2, 0.7))
     photograph = style == "photograph"
     return Light(
         light_rad,
@@ -251,6 +261,13 @@ def _lens(rng: np.random.Generator, style: str, contrast: float, levels: tuple[f
             noise=_some(rng, 0.25, 0.5, min(5.0, 0.1 * contrast)),
             shrink=1.0 - _some(rng, 0.15, 0.2, 0.5),
             jpeg_quality=int(rng.integers(30, 95)) if _chance(rng, 0.2) else None,
+        )
+    if style == "faceted":
+        return Lens(
+            smooth=_chance(rng, 0.25),
+            blur_px=_some(rng, 0.2, 0.2, 0.6),
+            noise=_some(rng, 0.2, 0.5, 2.0),
+            shrink=1.0 - _some(rng, 0.15, 0.2, 0.5),
         )
     photograph = style == "photograph"
     most_noise = min(14.0, 0.16 * contrast)
@@ -364,8 +381,22 @@ def _flat(rng: np.random.Generator, brightness: float, contrast: float) -> Cable
     )
 
 
+def _faceted(rng: np.random.Generator, brightness: float, contrast: float) -> CableLook:
+    # What lies in the shade keeps half of what sets the cable off.
+    return CableLook(
+        brightness,
+        gloss=_some(rng, 0.4, 5.0, 70.0),
+        gloss_sharpness=rng.uniform(4.0, 30.0),
+        bead=_some(rng, 0.2, 0.03, 0.2),
+        bead_period=rng.uniform(0.5, 3.0),
+        facing=rng.uniform(0.2, min(0.75, 0.2 + 0.5 * contrast / max(brightness, 1.0))),
+        facets=int(rng.choice([0, 3, 4, 6, 8])),
+    )
+
+
 _CABLES: dict[str, Callable[[np.random.Generator, float, float], CableLook]] = {
     "photograph": _photographed,
     "shaded": _shaded,
     "plain": _flat,
+    "faceted": _faceted,
 }

@@ -66,7 +66,8 @@ def shade(picture: Images, height: Images, surface: Images, shadow: Images, look
             braid slope, flank darkening, gloss, light direction [rad], shadow strength,
             unevenness, dimming a pixel of height, gloss sharpness, stripe brightness over
             its own, stripe period [px], stripe slope, stripe share, outline darkening, bead
-            darkening, bead period [px].
+            darkening, bead period [px], loss of sides that turn away, flat sides of half a cable,
+            angle of the light from straight above [rad].
     """
     rows, columns = height.shape
     for y in range(rows):
@@ -77,6 +78,14 @@ def shade(picture: Images, height: Images, surface: Images, shadow: Images, look
             across, along, direction = surface[y, x, 1], surface[y, x, 2], surface[y, x, 3]
             side = across * np.sin(look[7] - direction)
             value = look[1] * (1.0 - look[5] * across * across) * (1.0 + 0.25 * look[5] * side)
+            if look[19] > 0.0:
+                tilt = np.arcsin(min(max(across, -1.0), 1.0))
+                if look[20] > 0.0:
+                    step = np.pi / look[20]
+                    tilt = (np.floor(tilt / step) + 0.5) * step
+                lit = np.sin(tilt) * np.sin(look[7] - direction) * np.sin(look[21])
+                lit += np.cos(tilt) * np.cos(look[21])
+                value *= 1.0 - look[19] * (1.0 - max(lit, 0.0))
             if look[2] != 0.0:
                 phase = 2.0 * np.pi * along / look[3]
                 slope = look[4] * across

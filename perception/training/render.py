@@ -121,6 +121,9 @@ def _looks(look: Look, width: float) -> Floats:
                 cable.outline,
                 cable.bead,
                 cable.bead_period * width,
+                cable.facing,
+                cable.facets,
+                np.arctan(look.light.slant),
             ]
             for cable in look.cables
         ]

@@ -94,6 +94,7 @@ class SceneConfig:
         alike: Whether all cables look the same, or None for half of all scenes.
         leaving: Share of scenes that are moved aside, so that more strands leave the view.
         hairpins: Share of cables that are settled ones, seen where they turn back tightly.
+        look: How it looks; None to draw that, too.
     """
 
     extent: float = 46.0
@@ -107,12 +108,13 @@ class SceneConfig:
     alike: bool | None = None
     leaving: float = 0.15
     hairpins: float = 0.0
+    look: Look | None = None
 
 
 def make_scene(rng: np.random.Generator, config: SceneConfig | None = None) -> Scene:
     """Draw a scene."""
     config = config or SceneConfig()
-    return lay_scene(rng, _seen_lines(rng, config), config)
+    return lay_scene(rng, seen_lines(rng, config), config)
 
 
 def lay_scene(
@@ -143,13 +145,49 @@ def lay_scenes(
         first_over: Says where over and under is prescribed.
         shots: How many images to take.
     """
+    return shoot(rng, lay(rng, lines, config, first_over), shots)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Laid:
+    """Cables as they lie, and how they will look.
+
+    Attributes:
+        nodes: Nodes of all cables (x, y, height) [widths], in the square of the extent.
+        cable: Which cable each belongs to, shape (N,).
+        width_px: Width of the cables.
+        side_px: Side of the square.
+        size_px: (height, width) of the image.
+        look: How the scene looks.
+    """
+
+    nodes: Floats
+    cable: NDArray[np.int64]
+    width_px: float
+    side_px: int
+    size_px: tuple[int, int]
+    look: Look
+
+
+def lay(
+    rng: np.random.Generator,
+    lines: Sequence[Floats],
+    config: SceneConfig,
+    first_over: FirstOver | None = None,
+) -> Laid:
+    """Choose look, over and under of cables along given lines; arguments as for `lay_scenes`."""
     width_px = float(np.exp(rng.uniform(np.log(config.narrowest_px), np.log(config.widest_px))))
     side_px = int(config.extent * width_px)
-    size_px = config.size_px or (side_px, side_px)
-    look = draw_look(rng, len(lines), config.bright, config.style, config.alike)
+    look = config.look or draw_look(rng, len(lines), config.bright, config.style, config.alike)
     nodes, cable = _settled(rng, lines, look, first_over)
-    parts = [nodes[cable == k] for k in range(len(lines))]
-    origin_px = np.array([size_px[1] - side_px, size_px[0] - side_px]) / 2.0
+    return Laid(nodes, cable, width_px, side_px, config.size_px or (side_px, side_px), look)
+
+
+def shoot(rng: np.random.Generator, laid: Laid, shots: int = 1) -> tuple[Scene, ...]:
+    """Return scenes of cables as they lie, alike but for light and noise."""
+    width_px, size_px, look = laid.width_px, laid.size_px, laid.look
+    parts = [laid.nodes[laid.cable == k] for k in range(len(look.cables))]
+    origin_px = np.array([size_px[1] - laid.side_px, size_px[0] - laid.side_px]) / 2.0
     strands = [
         np.column_stack([part[:, :2] * width_px + origin_px, part[:, 2] * width_px])
         for part in parts
@@ -159,7 +197,7 @@ def lay_scenes(
         SceneCable(strand[:, :2], part[:, 2], own.width * width_px)
         for strand, part, own in zip(strands, parts, look.cables, strict=True)
     )
-    crossings = _true_crossings(nodes, cable)
+    crossings = _true_crossings(laid.nodes, laid.cable)
     seen = [each for each in crossings if not _covered(each, cables, connectors)]
     return tuple(Scene(image, width_px, cables, tuple(seen), connectors) for image in images)
 
@@ -174,7 +212,7 @@ def _covered(
     return any(connector.hides(place) for connector in connectors)
 
 
-def _seen_lines(rng: np.random.Generator, config: SceneConfig) -> list[Floats]:
+def seen_lines(rng: np.random.Generator, config: SceneConfig) -> list[Floats]:
     """Return centre lines of which enough lies in view."""
     aside = rng.uniform(-0.35, 0.35, 2) * config.extent * (rng.random() < config.leaving)
     lines: list[Floats] = []
