@@ -25,12 +25,14 @@ class Carried:
         from_m: Where it takes the cable, on the table, shape (2,).
         direction: Unit tangent of the cable there, shape (2,).
         to_m: Where it goes with it, shape (2,).
+        lets_go: Share of the way after which it opens and stays.
     """
 
     mode: GraspMode
     from_m: Floats
     direction: Floats
     to_m: Floats
+    lets_go: float = 1.0
 
 
 def carry(rod: Rod, parts: Sequence[Carried], longest_rest_s: float) -> bool:
@@ -53,7 +55,13 @@ def carry(rod: Rod, parts: Sequence[Carried], longest_rest_s: float) -> bool:
     up_m = height_m + LIFT_M
     _move(rod, hands, (0.0, height_m), (0.0, up_m), LIFT_M)
     way_m = max(float(np.linalg.norm(part.to_m - part.from_m)) for part in parts)
-    _move(rod, hands, (0.0, up_m), (1.0, up_m), way_m)
+    done = 0.0
+    for share in sorted({1.0, *(part.lets_go for part in parts)}):
+        _move(rod, hands, (done, up_m), (share, up_m), (share - done) * way_m)
+        for hand in [hand for hand, part in hands.items() if part.lets_go <= share < 1.0]:
+            rod.release_hand(hand)
+            del hands[hand]
+        done = share
     _move(rod, hands, (1.0, up_m), (1.0, height_m), LIFT_M)
     for hand in hands:
         rod.release_hand(hand)

@@ -71,4 +71,4 @@ def _part(nodes_m: Floats, hand: ImaginedHand) -> Carried:
     node = round(hand.arc * (len(nodes_m) - 1))
     along_m = nodes_m[min(node + 2, len(nodes_m) - 1), :2] - nodes_m[max(node - 2, 0), :2]
     direction = along_m / max(float(np.linalg.norm(along_m)), 1e-9)
-    return Carried(hand.role, nodes_m[node, :2].copy(), direction, hand.to_m)
+    return Carried(hand.role, nodes_m[node, :2].copy(), direction, hand.to_m, hand.lets_go)

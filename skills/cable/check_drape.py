@@ -10,6 +10,7 @@ from executive.core.work import Worker
 from perception.cable.interfaces import CableVision
 from perception.camera import CameraFrame
 from robots.interfaces import Floats
+from skills.cable.heights import heights_m
 
 # Cable that lies over others is lower than this; what hangs over an arm at home is higher.
 HANGS_M = 0.05
@@ -42,19 +43,3 @@ class CheckDrape(Skill):
         """Return how high above the table the cable is that is in view, shape (N,)."""
         rows, columns = np.nonzero(self._vision.cable_pixels(frame.image))
         return heights_m(frame, np.column_stack([columns, rows]).astype(np.float64))
-
-
-def heights_m(frame: CameraFrame, points_px: Floats) -> Floats:
-    """Return heights above the table of image points, 0 where the depth is unknown.
-
-    Args:
-        frame: Overhead frame.
-        points_px: Image points (x, y), shape (N, 2).
-    """
-    if not len(points_px):
-        return np.zeros(0)
-    columns, rows = np.rint(points_px).astype(int).T
-    pose = frame.camera.T_world_camera
-    table_m = (frame.camera.on_plane(points_px) - pose[:3, 3]) @ pose[:3, 2]
-    heights: Floats = np.nan_to_num(table_m - frame.depth_m[rows, columns], nan=0.0)
-    return heights

@@ -20,7 +20,7 @@ from skills.cable.imagining import best_imagined
 from skills.cable.knot_sites import REACH_X_M, REACH_Y_M, Pair, given_pairs, searched_pairs
 from skills.cable.laying_out import Ends, Pull, best_places, crossings_of
 from skills.cable.policies import HoldAt
-from skills.motion.arm_skill import MOTION_REASONS, ArmSkill, MotionSteps
+from skills.motion.arm_skill import MOTION_REASONS, ArmSkill
 from skills.motion.goals import above
 
 # The hand that cages and the one that pinches.
@@ -34,8 +34,6 @@ MOST_ENDS = 8
 # So many pairs of sites in reach are tried for a way to such a place, each for so many places: to
 # find that two arms are in each other's way takes seconds. Places that lie this near are alike.
 MOST_PULLS, MOST_TRIES, ALIKE_M = 2, 2, 0.1
-# Hands that are so near to a place have come there.
-SAME_M = 0.02
 # Where pulls can be imagined, so many pairs that are so far apart along the trace are held against
 # each other, each with so many places out of as many.
 IMAGINED_PULLS, APART_ARC, IMAGINED_PLACES, IMAGINED_OF = 4, 0.015, 3, 30
@@ -71,7 +69,7 @@ class _Grip:
 
     def left_by(self, ends: Ends) -> int:
         """Return how many crossings should be left when the hands have gone to these places."""
-        if self.foreseen is not None and np.allclose(ends, self.ends_m[0], atol=SAME_M):
+        if self.foreseen is not None and ends is self.ends_m[0]:
             return self.foreseen
         return crossings_of(self.pull.predicted(ends))
 
@@ -135,21 +133,21 @@ class DilateKnot(ArmSkill):
         found = yield from self._reach_down(seen, pairs[:MOST_PAIRS], planned)
         if isinstance(found, MotionFailure):
             return failure(found.code, found.text, stage=found.stage)
-        hands, pull, ends_m = found.hands, found.pull, found.ends_m
-        slides = not ends_m or pull.slides(ends_m[0])
+        hands = found.hands
+        slides = not found.ends_m or found.pull.slides(found.ends_m[0])
         yield from self._set_grips({hands[0]: "cage" if slides else "pinch", hands[1]: "pinch"})
         missed = [arm for arm in hands if not self._arms.holds(arm)]
-        failed: MotionFailure | None = None
+        gone: Ends | MotionFailure | None = None
         if not missed:
-            failed = yield from self._pull_apart(hands, travel_m if slides else 0.0, ends_m)
+            gone = yield from self._pull_apart(found, travel_m if slides else 0.0)
         risen = yield from self._release(hands, CLEARANCE_M)
-        if missed:
+        if missed or gone is None:
             return failure("grasp.missed", f"closed on nothing: {', '.join(missed)}")
-        failed = failed or risen
-        if failed is not None:
-            return failure(failed.code, failed.text, stage=failed.stage)
-        cage_m, pinch_m = (self._arms.tcp_position(arm)[:2] for arm in hands)
-        return success(predicted=found.left_by((cage_m, pinch_m)))
+        if isinstance(gone, MotionFailure):
+            return failure(gone.code, gone.text, stage=gone.stage)
+        if risen is not None:
+            return failure(risen.code, risen.text, stage=risen.stage)
+        return success(predicted=found.left_by(gone))
 
     def _reach_down(
         self, seen: "_Seen", ranked: Sequence[Pair], planned: bool
@@ -214,9 +212,10 @@ class DilateKnot(ArmSkill):
     def _with_places(self, grip: "_Grip", places: Sequence[Ends]) -> Iterator["_Grip"]:
         """Yield the way to hold with the first places to go to that both hands can make."""
         for ends in places:
+            shares = (grip.pull.lets_go(ends), 1.0)
             onward_m = tuple(
-                carried(np.append(end_m - goal.position_m[:2], 0.0))
-                for end_m, goal in zip(ends, grip.goals, strict=True)
+                carried(share * np.append(end_m - goal.position_m[:2], 0.0))
+                for end_m, goal, share in zip(ends, grip.goals, shares, strict=True)
             )
             hovers = tuple(
                 above(goal, CLEARANCE_M, *onward)
@@ -229,27 +228,47 @@ class DilateKnot(ArmSkill):
                 return
 
     def _pull_apart(
-        self, hands: _Hands, travel_m: float, ends_m: Sequence[Ends] = ()
-    ) -> MotionSteps:
+        self, grip: "_Grip", travel_m: float
+    ) -> Generator[None, None, "Ends | MotionFailure"]:
         """Lift, move apart, lay down: to the first places that the arms reach, else straight apart.
 
         Args:
-            hands: The hand that cages and the one that pinches.
+            grip: How the cable is held, and where the hands may go.
             travel_m: How much farther apart they move where no place is reached; 0 for not at all.
-            ends_m: Places for both on the table, the best first.
+
+        Returns:
+            The places on the table where the hands went, or why they could not.
         """
         up_m = np.array([0.0, 0.0, LIFT_M])
-        failed = yield from self._move_by(dict.fromkeys(hands, up_m))
+        failed = yield from self._move_by(dict.fromkeys(grip.hands, up_m))
         if failed is not None:
             return failed
-        tips_m = {arm: self._arms.tcp_position(arm) for arm in hands}
-        for way_m in (*_ways(tips_m, hands, ends_m), *_ways_apart(tips_m, travel_m)):
-            failed = yield from self._move_by(way_m)
+        tips_m = {arm: self._arms.tcp_position(arm) for arm in grip.hands}
+        gone: Ends | MotionFailure = (tips_m[grip.hands[0]][:2], tips_m[grip.hands[1]][:2])
+        holding: tuple[Arm, ...] = grip.hands
+        for way_m, share, ends in _ways(grip, tips_m, travel_m):
+            failed = yield from self._move_by({arm: share * way_m[arm] for arm in grip.hands})
+            gone = failed or ends
             if failed is None:
+                if share < 1.0:
+                    onward_m = (1.0 - share) * way_m[grip.hands[1]]
+                    holding = yield from self._draw_out(grip.hands, onward_m)
                 break
         # Where hands cannot lay it down at the end of their way, the cable falls these 3 cm.
-        yield from self._move_by(dict.fromkeys(hands, -up_m))
-        return failed
+        yield from self._move_by(dict.fromkeys(holding, -up_m))
+        return gone
+
+    def _draw_out(self, hands: _Hands, way_m: Floats) -> Generator[None, None, tuple[Arm, ...]]:
+        """Let the first hand go, before the plug comes to it; the second draws the end out of it.
+
+        A way that cannot be gone on is left out: the tail is through by then.
+
+        Returns:
+            Who still holds the cable.
+        """
+        yield from self._set_grips({hands[0]: "open"})
+        yield from self._move_by({hands[1]: way_m})
+        return hands[1:]
 
 
 def _apart(pairs: Sequence[Pair]) -> Iterator[Pair]:
@@ -285,14 +304,21 @@ def held_pull(frame: CameraFrame, trace: Trace, cage: GraspSite, pinch: GraspSit
 
 
 def _ways(
-    tips_m: Mapping[Arm, Floats], hands: _Hands, ends_m: Sequence[Ends]
-) -> Iterator[dict[Arm, Floats]]:
-    """Yield displacements of hands to places on the table, at the height where they are."""
-    for ends in ends_m:
-        yield {
+    grip: _Grip, tips_m: Mapping[Arm, Floats], travel_m: float
+) -> Iterator[tuple[dict[Arm, Floats], float, Ends]]:
+    """Yield displacements of hands at the height where they are, and where these lead.
+
+    With each comes the share of it after which the first hand is to let go: 1 for never.
+    """
+    for ends in grip.ends_m:
+        way_m = {
             arm: np.append(end_m - tips_m[arm][:2], 0.0)
-            for arm, end_m in zip(hands, ends, strict=True)
+            for arm, end_m in zip(grip.hands, ends, strict=True)
         }
+        yield way_m, grip.pull.lets_go(ends), ends
+    for way_m in _ways_apart(tips_m, travel_m):
+        first_m, second_m = (tips_m[arm][:2] + way_m[arm][:2] for arm in grip.hands)
+        yield way_m, 1.0, (first_m, second_m)
 
 
 def _ways_apart(tips_m: Mapping[Arm, Floats], travel_m: float) -> Iterator[dict[Arm, Floats]]:

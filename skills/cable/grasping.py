@@ -9,11 +9,14 @@ import numpy as np
 from perception.cable.types import Points
 from perception.camera import CameraFrame
 from robots.interfaces import ARMS, Arm, DualArm, Floats, TcpGoal
+from skills.cable.heights import axis_height_m
 from skills.motion.goals import above
 
-# Finger tips end 6 mm beyond the tool centre point: they stay 2 mm above the cloth and reach
-# past the axis of a cable of 6.6 mm diameter.
-GRASP_HEIGHT_M = 0.008
+# Finger tips end 6 mm beyond the tool centre point: so high above the axis of the cable they reach
+# past it, stay 2 mm above the cloth, and above a strand that it lies on.
+ABOVE_AXIS_M = 0.0047
+# Cable that seems higher hangs over something, or is an error of the depth.
+HIGHEST_AXIS_M = 0.04
 CLEARANCE_M = 0.06
 # Held cable is carried at this height.
 LIFT_M = 0.03
@@ -30,9 +33,11 @@ def grasp_goal(frame: CameraFrame, point_px: Points, direction: Points) -> TcpGo
         direction: Tangent of the cable in the image, shape (2,).
 
     Returns:
-        A goal on the table whose opening direction is square to the cable.
+        A goal at the height where the cable lies by the depth image, whose opening direction is
+        square to the cable.
     """
-    position_m = frame.camera.on_plane(point_px)[0] + np.array([0.0, 0.0, GRASP_HEIGHT_M])
+    axis_m = min(axis_height_m(frame, point_px), HIGHEST_AXIS_M)
+    position_m = frame.camera.on_plane(point_px, axis_m)[0] + np.array([0.0, 0.0, ABOVE_AXIS_M])
     # Image y runs against world y; the opening direction is the tangent turned by 90 degrees.
     yaw_rad = float(np.arctan2(direction[0], direction[1]))
     return TcpGoal(position_m, yaw_rad)

@@ -1,7 +1,8 @@
 """Which of several pulls leaves the cable best, as far as that can be imagined."""
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from statistics import fmean
 
 import numpy as np
 
@@ -14,6 +15,9 @@ from skills.cable.laying_out import STEP_M, Ends, Pull, crossings_of, tangle_cos
 # In crossings: that there is a knot, and a metre of tail that is left to draw out of it. A pull
 # draws some 0.4 m and takes ten seconds, about as long as to see through ten crossings more.
 KNOT_COST, TAIL_COST = 5.0, 20.0
+# Hands take hold so much farther along or back than they are told to. What a pull leaves depends
+# on little things: so many of the best are imagined with these grasps too, and the mean counts.
+MISSES_M, MOST_AGAIN = (0.01, -0.01), 3
 # A tail is measured in steps of so many nodes; less cable than this has no knot.
 STRIDES, LEAST_NODES = (32, 8, 2), 8
 
@@ -47,7 +51,9 @@ def best_imagined(
         pulls: What is held, and the places that both hands might go to.
         over: Arc positions where the cable lies on top of itself.
     """
-    return sorted(_imagined(foresight, pulls, over), key=lambda one: one.cost)
+    first = _ranked(_imagined(foresight, pulls, over))
+    again = [_with_misses(foresight, pulls[one.pull][0], one, over) for one in first[:MOST_AGAIN]]
+    return _ranked(again) + first[MOST_AGAIN:]
 
 
 def _imagined(
@@ -61,6 +67,22 @@ def _imagined(
             if nodes_m is not None:
                 crossings = crossings_of(nodes_m[:, :2])
                 yield Imagined(number, ends, crossings, outcome_cost(nodes_m))
+
+
+def _with_misses(
+    foresight: Foresight, pull: Pull, one: Imagined, over: Sequence[float]
+) -> Imagined:
+    """Return what should come of a pull with the mean cost of hands that take hold nearby."""
+    nearby = [
+        (replace(pull, cage_m=pull.cage_m + miss_m, pinch_m=pull.pinch_m + miss_m), [one.ends])
+        for miss_m in MISSES_M
+    ]
+    costs = [other.cost for other in _imagined(foresight, nearby, over)]
+    return replace(one, cost=fmean([one.cost, *costs]))
+
+
+def _ranked(found: Iterable[Imagined]) -> list[Imagined]:
+    return sorted(found, key=lambda one: one.cost)
 
 
 def outcome_cost(nodes_m: Floats) -> float:

@@ -9,6 +9,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import product
 from math import hypot
+from typing import Literal
 
 import numpy as np
 
@@ -40,6 +41,8 @@ RIM_M = 0.03
 TAIL_COST, LEFT_COST, BESIDE_COST = 20.0, 4.0, 0.15
 # In crossings: a step of cable that would come to lie off the table.
 OFF_COST = 1.0
+# A plug does not pass through a cage: so much before it is there, that hand lets the cable go.
+PLUG_M = 0.04
 # A tail is out when so much more has been drawn: connectors, and cable that was not quite straight.
 MARGIN_M = 0.06
 BESIDE_M = 0.02
@@ -83,28 +86,57 @@ class Pull:
         hands_m = point_at(self.line_m, arcs, np.array([self.cage_m, self.pinch_m]))
         return span_m - float(np.linalg.norm(hands_m[1] - hands_m[0]))
 
+    def lets_go(self, ends: Ends) -> float:
+        """Return the share of the hands' way after which the first one opens, before the plug.
+
+        Where the hands pull on against a plug, it is torn out of them, and the cable flies.
+        """
+        if not self.slides(ends):
+            return 1.0
+        shares = np.linspace(0.0, 1.0, 51)[:, None]
+        hands_m = point_at(
+            self.line_m, arc_lengths(self.line_m), np.array([self.cage_m, self.pinch_m])
+        )
+        between_m = (1.0 - shares) * (hands_m[1] - hands_m[0]) + shares * (ends[1] - ends[0])
+        taut = np.linalg.norm(between_m, axis=1) >= self.pinch_m - PLUG_M
+        return float(shares[np.argmax(taut), 0]) if taut.any() else 1.0
+
     def hands(self, ends: Ends) -> tuple[ImaginedHand, ImaginedHand]:
         """Return what both hands do that go to these places."""
         length_m = float(arc_lengths(self.line_m)[-1])
-        first = ImaginedHand(
-            "cage" if self.slides(ends) else "pinch", self.cage_m / length_m, ends[0]
-        )
+        role: Literal["cage", "pinch"] = "cage" if self.slides(ends) else "pinch"
+        first = ImaginedHand(role, self.cage_m / length_m, ends[0], self.lets_go(ends))
         return first, ImaginedHand("pinch", self.pinch_m / length_m, ends[1])
 
     def predicted(self, ends: Ends) -> Floats:
         """Return the line that is left when both hands have gone to these places."""
-        arcs = arc_lengths(self.line_m)
-        slid_m = self.drawn_m(ends) if self.slides(ends) else 0.0
-        tail = _piece(self.line_m, arcs, slid_m, self.cage_m)
-        rest = _piece(self.line_m, arcs, self.pinch_m, float(arcs[-1]))
-        if self.slides(ends):
-            steps = max(int(float(np.linalg.norm(ends[1] - ends[0])) / STEP_M), 1)
-            middle: Floats = np.linspace(*ends, steps + 1)
-        else:
-            between = _piece(self.line_m, arcs, self.cage_m, self.pinch_m)
-            middle = followed(followed(between, ends[0])[::-1], ends[1])[::-1]
-        left, right = followed(tail[::-1], ends[0])[::-1], followed(rest, ends[1])
-        return np.vstack([left[:-1], middle, right[1:]])
+        until_pinch = self._slid(ends) if self.slides(ends) else self._taken_along(ends)
+        rest = self._piece(self.pinch_m, float(arc_lengths(self.line_m)[-1]))
+        return np.vstack([until_pinch, followed(rest, ends[1])[1:]])
+
+    def _slid(self, ends: Ends) -> Floats:
+        """Return the line up to the second hand where the cable slid through the first one."""
+        span_m, drawn_m = float(np.linalg.norm(ends[1] - ends[0])), self.drawn_m(ends)
+        # What was let go ends where it is straight behind the second hand.
+        begin_m = ends[1] + (ends[0] - ends[1]) * min(1.0, self.pinch_m / span_m)
+        middle: Floats = np.linspace(begin_m, ends[1], max(int(span_m / STEP_M), 1) + 1)
+        if drawn_m >= self.cage_m:
+            return middle
+        tail = followed(self._piece(drawn_m, self.cage_m)[::-1], ends[0])[::-1]
+        return np.vstack([tail[:-1], middle])
+
+    def _taken_along(self, ends: Ends) -> Floats:
+        """Return the line up to the second hand where the first one has not let it slide."""
+        tail = followed(self._piece(0.0, self.cage_m)[::-1], ends[0])[::-1]
+        between = self._piece(self.cage_m, self.pinch_m)
+        middle = followed(followed(between, ends[0])[::-1], ends[1])[::-1]
+        return np.vstack([tail[:-1], middle])
+
+    def _piece(self, begin_m: float, end_m: float) -> Floats:
+        steps = max(round((end_m - begin_m) / STEP_M), 1)
+        at_m = np.linspace(begin_m, end_m, steps + 1)
+        piece: Floats = point_at(self.line_m, arc_lengths(self.line_m), at_m)
+        return piece
 
     def cost(self, ends: Ends) -> float:
         """Return how bad it is to leave the cable as it is predicted, in crossings."""
@@ -153,12 +185,6 @@ def followed(line_m: Floats, to_m: Floats) -> Floats:
                 break
             xs[k], ys[k] = xs[k - 1] + x * (length / gap), ys[k - 1] + y * (length / gap)
     return np.column_stack([xs, ys])
-
-
-def _piece(line_m: Floats, arcs: Floats, begin_m: float, end_m: float) -> Floats:
-    steps = max(round((end_m - begin_m) / STEP_M), 1)
-    piece: Floats = point_at(line_m, arcs, np.linspace(begin_m, end_m, steps + 1))
-    return piece
 
 
 def places(left_holds_cage: bool) -> Iterator[Ends]:

@@ -1,5 +1,6 @@
 """Pull in cable that leaves the view (the thesis's exposure move)."""
 
+from collections.abc import Iterable
 from typing import Annotated
 
 import numpy as np
@@ -10,6 +11,7 @@ from perception.cable.polyline import arc_lengths
 from perception.cable.types import Trace
 from perception.camera import CameraFrame
 from robots.interfaces import Floats, TcpGoal
+from robots.placement import TABLE_SIZE_M
 from skills.cable.grasping import grasp_goal
 from skills.cable.pulling import PullSkill, ways_inwards
 
@@ -44,10 +46,23 @@ class PullIn(PullSkill):
         line_m = frame.camera.on_plane(trace.points_px)[:, :2]
 
         def ways_m(goal: TcpGoal) -> list[Floats]:
-            ways = ways_inwards(goal.position_m, distance_m)
-            return free_first(list(ways), goal.position_m[:2], line_m)
+            ways = off_edge_first(ways_inwards(goal.position_m, distance_m), line_m[-1])
+            return free_first(ways, goal.position_m[:2], line_m)
 
         return (yield from self.carry(goals, ways_m))
+
+
+def off_edge_first(ways_m: Iterable[Floats], end_m: Floats) -> list[Floats]:
+    """Return ways, those first that lead farthest away from the edge that the cable leaves over.
+
+    A way along that edge draws little of the cable in.
+
+    Args:
+        ways_m: Level displacements, shape (3,) each.
+        end_m: Where the cable leaves the table, shape (2,).
+    """
+    axis = int(np.argmin(0.5 * np.array(TABLE_SIZE_M) - np.abs(end_m)))
+    return sorted(ways_m, key=lambda way_m: float(np.sign(end_m[axis]) * way_m[axis]))
 
 
 def free_first(ways_m: list[Floats], from_m: Floats, line_m: Floats) -> list[Floats]:

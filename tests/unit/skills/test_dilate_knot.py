@@ -6,8 +6,10 @@ from cell_fakes import ArrivingArms, finished, frame, overhand
 
 from executive.core.work import InlineWorker
 from perception.cable.grasp_sites import cage_sites, pinch_sites
-from skills.cable.dilate_knot import DilateKnot, apart, unlike
+from perception.cable.polyline import arc_lengths
+from skills.cable.dilate_knot import DilateKnot, _Grip, apart, unlike
 from skills.cable.knot_sites import HANDS_APART_M, REACH_X_M, given_pairs, ranked_pairs
+from skills.cable.laying_out import Pull
 
 
 def inputs(**more):
@@ -45,6 +47,26 @@ def test_a_blocked_way_apart_is_tried_shorter():
     while (outcome := skill.step()).status == "RUNNING":
         pass
     assert outcome.status == "SUCCESS"
+
+
+def test_the_caging_hand_opens_before_a_plug_and_the_other_draws_the_end_out():
+    arms = ArrivingArms()
+    trace = overhand()[0]
+    near = replace(trace, points_px=trace.points_px[-12:])
+    skill = DilateKnot(arms, InlineWorker())
+    pull = Pull(frame().camera.on_plane(near.points_px)[:, :2], 0.0, 0.0)
+    length_m = float(arc_lengths(pull.line_m)[-1])
+    pull = replace(pull, cage_m=0.2 * length_m, pinch_m=0.6 * length_m)
+    ends = np.array([-0.3, 0.0]), np.array([0.3, 0.0])
+    grip = _Grip(("left", "right"), (), pull, (ends,))
+    arms.tools = {"left": np.array([-0.05, 0.0, 0.01]), "right": np.array([0.05, 0.0, 0.01])}
+    for _ in skill._pull_apart(grip, 0.0):
+        pass
+    opened = arms.log.index(("grip", "left", "open"))
+    moves = [entry[1] for entry in arms.log[opened:] if entry[0] == "move"]
+    assert moves[0]["right"][:2] == pytest.approx(ends[1], abs=2e-3)
+    assert all(move["left"] == moves[0]["left"] for move in moves)
+    assert moves[-1]["right"][2] < moves[0]["right"][2]
 
 
 def test_closing_on_nothing_is_a_miss_and_lets_go():

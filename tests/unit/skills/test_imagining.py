@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from skills.cable.imagining import KNOT_COST, outcome_cost, shorter_tail_m
+from skills.cable.imagining import KNOT_COST, best_imagined, outcome_cost, shorter_tail_m
+from skills.cable.laying_out import Pull
 
 STRAIGHT_M = np.column_stack([np.linspace(-0.4, 0.4, 81), np.zeros((81, 2))])
 
@@ -43,3 +44,23 @@ def test_the_tail_to_draw_grows_with_the_shorter_tail_alone(turned):
     assert longer - short == pytest.approx(0.1, abs=0.03)
     assert other == pytest.approx(short, abs=0.03)
     assert shorter_tail_m(STRAIGHT_M) is None
+
+
+class Lucky:
+    """Imagines a straight cable for a pull that takes hold just so, and a knot a little off it."""
+
+    def __init__(self, exact):
+        self.exact = exact
+
+    def after(self, line_m, over, hands):
+        if hands[1].to_m[0] == 0.3:
+            return STRAIGHT_M if hands[0].arc == pytest.approx(self.exact) else with_tails(0.8, 0.8)
+        return with_tails(0.05, 0.4)
+
+
+def test_a_pull_that_is_good_by_luck_alone_is_not_the_best():
+    pull = Pull(STRAIGHT_M[:, :2], 0.2, 0.4)
+    lucky, steady = ((np.array([-0.3, 0.0]), np.array([x_m, 0.0])) for x_m in (0.3, 0.35))
+    found = best_imagined(Lucky(0.2 / 0.8), [(pull, [lucky, steady])], [])
+    assert [one.ends is steady for one in found] == [True, False]
+    assert found[0].cost == pytest.approx(outcome_cost(with_tails(0.05, 0.4)))

@@ -11,6 +11,7 @@ from perception.cable.polyline import arc_lengths
 from skills.cable.dilate_knot import DilateKnot
 from skills.cable.knot_sites import REACH_X_M, REACH_Y_M, deeper_pairs
 from skills.cable.laying_out import (
+    PLUG_M,
     Pull,
     best_places,
     crossings_of,
@@ -43,6 +44,27 @@ def test_hands_that_go_farther_apart_than_there_is_cable_draw_it_out_of_the_tail
     assert pull.drawn_m(ends) == pytest.approx(0.5 - 0.2)
     line = pull.predicted(ends)
     assert float(arc_lengths(line)[-1]) == pytest.approx(LENGTH_M, rel=0.05)
+
+
+def test_a_caging_hand_opens_before_the_plug_comes_to_it_and_only_then():
+    long, short = Pull(LINE, 0.4, 0.6), Pull(LINE, 0.1, 0.3)
+    ends = np.array([-0.25, 0.1]), np.array([0.25, 0.1])
+    assert long.lets_go(ends) == 1.0
+    share = short.lets_go(ends)
+    at_m = [
+        (1.0 - share) * np.array([np.interp(arc, arc_lengths(LINE), x) for x in LINE.T])
+        + share * end
+        for arc, end in zip((0.1, 0.3), ends, strict=True)
+    ]
+    assert 0.0 < share < 1.0
+    assert np.linalg.norm(at_m[1] - at_m[0]) == pytest.approx(0.3 - PLUG_M, abs=0.02)
+    assert [hand.lets_go for hand in short.hands(ends)] == [share, 1.0]
+
+
+def test_a_tail_that_was_let_go_lies_straight_behind_the_other_hand():
+    line = Pull(LINE, 0.1, 0.3).predicted((np.array([-0.35, 0.1]), np.array([0.35, 0.1])))
+    assert float(arc_lengths(line)[-1]) == pytest.approx(LENGTH_M, rel=0.05)
+    assert line[0] == pytest.approx([0.35 - 0.3, 0.1])
 
 
 def test_where_a_long_loop_lies_between_the_hands_the_tail_is_taken_along():

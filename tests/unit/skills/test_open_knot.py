@@ -5,7 +5,8 @@ from cell_fakes import ArrivingArms, finished, frame, overhand
 
 from executive.core.work import InlineWorker
 from skills.cable.open_knot import OpenKnot
-from skills.cable.pull_in import free_first
+from skills.cable.pull_in import free_first, off_edge_first
+from skills.cable.pulling import ways_inwards
 
 
 def opened(knot_of=lambda knot: (knot,), arms=None):
@@ -58,3 +59,13 @@ def test_a_knot_far_from_the_middle_is_drawn_towards_it():
         moves = [entry[1] for entry in arms.log if entry[0] == "move"]
         arm = next(entry[1] for entry in arms.log if entry[0] == "grip")
         assert abs(moves[3][arm][0]) < abs(moves[2][arm][0])
+
+
+def test_cable_over_an_edge_is_drawn_away_from_that_edge_and_not_along_it():
+    hold_m = np.array([-0.36, -0.2, 0.0])
+    front, left = (
+        off_edge_first(ways_inwards(hold_m, 0.25), np.array(end_m))[0]
+        for end_m in ((-0.36, -0.37), (-0.49, -0.2))
+    )
+    assert front[1] > 0.2
+    assert left[0] > 0.2

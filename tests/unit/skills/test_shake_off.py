@@ -5,7 +5,8 @@ import pytest
 from cell_fakes import ArrivingArms, finished, frame
 
 from executive.core.work import InlineWorker
-from skills.cable.check_drape import CheckDrape, heights_m
+from skills.cable.check_drape import CheckDrape
+from skills.cable.heights import heights_m
 from skills.cable.shake_off import ShakeOff
 
 

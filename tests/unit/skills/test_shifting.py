@@ -8,7 +8,7 @@ from executive.core.work import InlineWorker
 from perception.cable.types import Endpoint, TraceEnd
 from skills.cable.bring_knot import BringKnot
 from skills.cable.perturb_doubt import PerturbDoubt
-from skills.cable.perturb_endpoint import PerturbEndpoint
+from skills.cable.perturb_endpoint import HALF_SQUARE_APART_M, PerturbEndpoint
 from skills.cable.pull_in import PullIn
 from skills.cable.pulling import towards_middle
 from skills.cable.shifting import HALF_SQUARE_M, Hold, room_map, roomiest_steps
@@ -145,3 +145,16 @@ def test_a_trace_too_short_to_hold_is_said_to_be_out_of_reach(end):
     skill = PerturbDoubt(ArrivingArms(), InlineWorker(), BlindVision(), np.random.default_rng(3))
     outcome, _ = finished(skill, {"frame": frame(), "trace": stub, "crossings": ()})
     assert outcome.reason.code == "grasp.unreachable"
+
+
+def test_of_ends_side_by_side_one_is_taken_far_away_and_ends_apart_are_left_alone():
+    apart = {"frame": frame(), "endpoints": (end_at(300.0), end_at(600.0)), "only_covered": True}
+    arms = ArrivingArms()
+    skill = PerturbEndpoint(arms, InlineWorker(), BlindVision(), np.random.default_rng(3))
+    outcome, _ = finished(skill, apart)
+    assert (outcome.reason.code, arms.log) == ("ends.clear", [])
+    outcome, _ = finished(skill, apart | {"endpoints": (end_at(500.0), end_at(530.0))})
+    moves = [entry[1] for entry in arms.log if entry[0] == "move"]
+    ways_m = [np.abs(np.subtract(moves[3][arm][:2], moves[2][arm][:2])).max() for arm in moves[3]]
+    assert outcome.status == "SUCCESS"
+    assert HALF_SQUARE_M < max(ways_m) <= HALF_SQUARE_APART_M

@@ -60,3 +60,18 @@ def test_the_same_pull_is_imagined_the_same():
     one, other = (CableForesight().after(line_m, over, hands) for _ in range(2))
     assert one is not None
     assert np.array_equal(one, other)
+
+
+def test_a_hand_that_lets_go_leaves_the_end_that_would_have_been_torn_out():
+    line_m = np.column_stack([np.linspace(-0.4, 0.4, 60), np.zeros(60)])
+    to_m = np.array([0.45, 0.1])
+    for lets_go in (0.2, 1.0):
+        hands = [
+            ImaginedHand("cage", 0.2, np.array([-0.44, 0.1]), lets_go),
+            ImaginedHand("pinch", 0.5, to_m),
+        ]
+        nodes_m = CableForesight().after(line_m, [], hands)
+        assert nodes_m is not None
+        # The pinch has the cable where it took it only if nothing held the plug back.
+        slipped_m = np.linalg.norm(nodes_m[len(nodes_m) // 2, :2] - to_m)
+        assert bool(slipped_m < 0.02) is (lets_go < 1.0)
