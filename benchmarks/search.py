@@ -9,15 +9,20 @@ Actions are those over scenes that both methods have solved, `capped` counts a f
 most that are allowed, 2 N. Intervals of changes are bootstrapped over paired scenes.
 
 The environment may say how many scenes there are of each kind (`SEARCH_SCENES`, 200) and how many
-processes work on them (`SEARCH_WORKERS`, one for each core).
+processes work on them (`SEARCH_WORKERS`, one for each core). With `--kept FILE` each scene is
+written down when all have searched it, and a benchmark that was killed goes on from there: scene by
+scene of all kinds, so that fewer scenes can be told of meanwhile.
 """
 
+import argparse
+import json
 import os
 import sys
 import time
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
+from pathlib import Path
 
 import numpy as np
 
@@ -136,9 +141,27 @@ class Job:
     kind: Kind
     seed: int
 
+    @property
+    def key(self) -> str:
+        """Names the scene."""
+        return f"{self.kind.name} {self.seed}"
 
-def solve(job: Job) -> dict[str, Trial]:
+
+@dataclass(frozen=True, slots=True)
+class Solved:
+    """What came of one scene: a trial of each method, and how long all took."""
+
+    trials: Mapping[str, Trial]
+    took_s: float
+
+
+def solve(job: Job) -> Solved:
     """Search one scene by every method."""
+    begun = time.perf_counter()
+    return Solved(_trials(job), time.perf_counter() - begun)
+
+
+def _trials(job: Job) -> dict[str, Trial]:
     domain = shipped_domain(job.kind.domain)
     reach = REACHES[job.kind.regime]
     rules = SceneRules(
@@ -166,16 +189,20 @@ def _pushes_may_solve(scene: Scene, reach: Reach) -> bool:
     )
 
 
-def run(quick: bool, seed: int) -> Sequence[Row]:
+def run(quick: bool, seed: int, words: Sequence[str] = ()) -> Sequence[Row]:
     """Run all kinds; two scenes each of a few when quick."""
+    parser = argparse.ArgumentParser(prog="python -m benchmarks search")
+    parser.add_argument("--kept", type=Path, help="file of scenes that are over")
+    kept: Path | None = parser.parse_args(words).kept
     scenes = 2 if quick else int(os.environ.get("SEARCH_SCENES", "200"))
     kinds = _kinds()[::5] if quick else _kinds()
     jobs = [
-        Job(kind, FIRST_SEED + 10_000 * seed + number) for kind in kinds for number in range(scenes)
+        Job(kind, FIRST_SEED + 10_000 * seed + number) for number in range(scenes) for kind in kinds
     ]
-    begun = time.perf_counter()
-    trials = _solved(jobs)
-    took_s = time.perf_counter() - begun
+    workers = int(os.environ.get("SEARCH_WORKERS", str(os.cpu_count() or 1)))
+    solved = _solved(jobs, workers, kept)
+    trials = [solved[job.key].trials for job in jobs]
+    took_s = sum(solved[job.key].took_s for job in jobs) / workers
     rows: list[Row] = []
     for kind in kinds:
         mine = [trial for job, trial in zip(jobs, trials, strict=True) if job.kind == kind]
@@ -200,15 +227,31 @@ def _kinds() -> list[Kind]:
     return kinds + [Kind(domain, 15, RANDOM) for domain in DOMAINS]
 
 
-def _solved(jobs: Sequence[Job]) -> list[dict[str, Trial]]:
-    workers = int(os.environ.get("SEARCH_WORKERS", str(os.cpu_count() or 1)))
-    trials = []
+def _solved(jobs: Sequence[Job], workers: int, kept: Path | None) -> Mapping[str, Solved]:
+    """Return what came of each scene, by its key; those that are written down are not searched."""
+    solved = _read(kept)
+    left = [job for job in jobs if job.key not in solved]
     with ProcessPoolExecutor(max_workers=workers) as pool:
-        for number, trial in enumerate(pool.map(solve, jobs, chunksize=2), 1):
-            trials.append(trial)
+        for number, (job, one) in enumerate(zip(left, pool.map(solve, left), strict=True), 1):
+            solved[job.key] = one
+            if kept is not None:
+                with kept.open("a", encoding="utf-8") as file:
+                    file.write(json.dumps({"key": job.key, **asdict(one)}) + "\n")
             if number % 50 == 0:
-                print(f"{number} of {len(jobs)} scenes", file=sys.stderr, flush=True)
-    return trials
+                print(f"{number} of {len(left)} scenes", file=sys.stderr, flush=True)
+    return solved
+
+
+def _read(kept: Path | None) -> dict[str, Solved]:
+    if kept is None or not kept.exists():
+        return {}
+    rows = [json.loads(line) for line in kept.read_text(encoding="utf-8").splitlines()]
+    return {
+        row["key"]: Solved(
+            {name: Trial(**trial) for name, trial in row["trials"].items()}, row["took_s"]
+        )
+        for row in rows
+    }
 
 
 def _methods(trials: Sequence[Mapping[str, Trial]]) -> list[str]:

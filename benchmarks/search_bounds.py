@@ -62,4 +62,5 @@ def _situation(
         places_m=np.array([[target.x_m, target.y_m]]),
         weights=np.ones(1),
         been=been,
+        before=been,
     )

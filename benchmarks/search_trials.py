@@ -23,7 +23,7 @@ from perception.shelf.planning.free_floor import CELL_M, free_cells
 from perception.shelf.planning.looking_ahead import ANYHOW, Situation, look_ahead
 from perception.shelf.planning.moves import Move, Place
 from perception.shelf.planning.room import Reach
-from perception.shelf.semantic import column_semantics, floor_semantics
+from perception.shelf.semantic import column_semantics, floor_semantics, image_semantics
 from perception.shelf.sightings import sightings
 from perception.shelf.spatial import RunningMinimum, along_shelf, mask_occupancy
 from perception.shelf.types import Box, Floats, ShelfView, Sighting
@@ -44,7 +44,8 @@ class Way:
             in the image), `network` (the same of what the spatial network tells) or `masks` (the
             thesis's heuristic).
         affinity: Semantics, or None for none.
-        product: Where semantics are multiplied in: per `pose`, or per `column` as in the thesis.
+        product: Where semantics are multiplied in: per `pose`, or as in the thesis per `column`, or
+            in the `image` by distance in pixels, as in its physical experiments.
         calibrated: Whether affinities are mixed by the estimated degree of organisation.
         flat: Whether the distribution is reduced to one along the shelf.
         policy: `dar` as published, `clearing` (the same, which clears its way) or `ahead` (ours).
@@ -97,6 +98,7 @@ class WaySearcher:
         self.caster = self.poses.caster
         self.belief, self.minimum = PoseBelief(self.poses), RunningMinimum()
         self.original, self.contacts = OriginalScene(), Contacts()
+        self.first: dict[str, Sighting] = {}
         self.been: list[tuple[str, Box]] = []
         self.enough = enough
         policy = ReductionWithClearing if way.policy == "clearing" else DistributionAreaReduction
@@ -111,6 +113,7 @@ class WaySearcher:
         self.view = self.world.look()
         self.seen = sightings(self.view, self.shelf, self.sizes, self.caster)
         self.original.update(self.seen)
+        self.first = {sighting.label: sighting for sighting in self.seen} | self.first
         self.belief.update(self.view, self.seen)
 
     def choose(self) -> Move | None:
@@ -127,6 +130,9 @@ class WaySearcher:
             heat = self._spatial(view, seen)
         elif self.way.product == "pose":
             heat = self.belief.heat(self._semantics())
+        elif self.way.product == "image":
+            first = tuple(self.first.values())
+            heat = self._spatial(view, seen) * image_semantics(first, self._affinity(), self.target)
         else:
             heat = self._spatial(view, seen) * column_semantics(
                 view.camera, self.shelf, self.original.boxes, self._affinity(), self.target

@@ -4,8 +4,9 @@ Twelve pharmacy scenes, three each of 7, 8, 9 and 10 objects; a search ends when
 shows, or after two actions an object. The arm, contacts, friction and suction are simulated;
 detection is perfect, and depth is noisy. All policies search the same scenes. `ours` is the
 mission's own reasoner, which is told that half of the target is to show. For the other policies a
-target that shows, but not by half, is freed by one rule: move away what stands before it. `least`
-knows where everything stands, and moves it without physics: about the fewest moves that could do.
+target that shows, but not by half, is freed by one rule: move away what stands before it; semantics
+are taken in the image, as the thesis does where depth is noisy (section 6.3). `least` knows where
+everything stands, and moves it without physics: about the fewest moves that could do.
 
 `--scenes N` takes more or fewer scenes, `--policies` some of the policies; of more than twelve
 there are rows for the first twelve and for all. With `--kept FILE` each
@@ -175,8 +176,8 @@ def searchers(reach: Reach) -> Mapping[str, Callable[[Scene, PhysicalShelf], Sea
     return {
         "spatial_nn": by(Way("network", None, flat=True, reach=reach)),
         "spatial": by(Way("minimum", None, flat=True, reach=reach)),
-        "heuristic": by(Way("masks", affinity, flat=True, reach=reach)),
-        "s4": by(Way("network", affinity, flat=True, reach=reach)),
+        "heuristic": by(Way("masks", affinity, "image", flat=True, reach=reach)),
+        "s4": by(Way("network", affinity, "image", flat=True, reach=reach)),
         "ours": lambda scene, world: MissionSearcher(scene, affinity, reach, world, enough=SHOWN),
     }
 

@@ -67,6 +67,8 @@ class ShelfBelief:
         places_m: Cells of the floor in which the target's centre may be, shape (K, 2).
         plausible: How far looks have left it possible there, in (0, 1], shape (K,).
         weights: Probability of each cell, shape (K,); adds up to 1.
+        belied: Share of its face by which a target in each cell should have shown in some look, by
+            where everything was thought to stand, and did not, shape (K,).
         organisation: Estimated share of objects that stand where they belong, in [0, 1].
         unseen: Where a small thing may stand that no look has shown; see `planning.exploring`.
         floor: Which cells of the floor are known to be free, shape (nx, ny).
@@ -83,6 +85,7 @@ class ShelfBelief:
     places_m: Floats
     plausible: Floats
     weights: Floats
+    belied: Floats
     organisation: float
     unseen: Bools
     floor: Bools

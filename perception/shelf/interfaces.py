@@ -6,6 +6,7 @@ from perception.rgbd import RgbdFrame
 from perception.shelf.beliefs import SeenObject, ShelfBelief
 from perception.shelf.detections import Detections
 from perception.shelf.planning.moves import Move, Plan
+from perception.shelf.planning.room import WIDER_M
 from perception.shelf.types import Box, Floats
 
 
@@ -33,8 +34,13 @@ class ShelfReasoning(Protocol):
         """Return the moves that are expected to find the target soonest; None when none helps."""
         ...
 
-    def clear_way(self, belief: ShelfBelief, label: str) -> Move | None:
+    def clear_way(self, belief: ShelfBelief, label: str, wider_m: float = WIDER_M) -> Move | None:
         """Return a move that helps to take a seen object out; None when its way is free or stays.
+
+        Args:
+            belief: What is believed.
+            label: The object.
+            wider_m: How much wider the way is taken to be where nothing seems to stand in it.
 
         Raises:
             InputError: No such object has been seen.

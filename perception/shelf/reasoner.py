@@ -33,8 +33,8 @@ from perception.shelf.planning.looking_ahead import (
     look_ahead,
 )
 from perception.shelf.planning.moves import Move, Plan, moved_box
-from perception.shelf.planning.outlook import COARSE
-from perception.shelf.planning.room import Reach, footprints
+from perception.shelf.planning.outlook import COARSE, shares_shown
+from perception.shelf.planning.room import WIDER_M, Reach, footprints
 from perception.shelf.planning.tidying import tidying_move
 from perception.shelf.planning.ways_out import freeing_move
 from perception.shelf.refining import refined
@@ -49,8 +49,14 @@ KEPT = 16
 TOO_HEAVY = 0.9
 # How well the place is known of a target that was seen from another side, and only partly.
 GLIMPSE_M = 0.02
+# Distance of the places that are tried of a target of which a part shows.
+PLACE_M = 0.01
 # What is the target with this probability is worth moves that show more of it.
 WORTH_A_MOVE = 0.2
+# Of places that are less likely by this than the likeliest it is not asked what should show.
+UNLIKELY = 1e-3
+# However much of a target should have shown: it does when so much more does than this share.
+BELIED = 0.6
 # After these failures an object is not where it was, and must be looked for.
 GONE = ("push.nothing_there", "suction.lost")
 # After these the cup does not hold it: it is too heavy, or its face is not flat.
@@ -113,6 +119,7 @@ class SearchReasoner:
             places_m=places_m,
             plausible=np.ones(count),
             weights=np.full(count, 1.0 / count),
+            belied=np.zeros(count),
             organisation=0.5,
             unseen=np.ones(self._things(self._camera).count, dtype=bool),
             floor=np.zeros(cells, dtype=bool),
@@ -147,6 +154,7 @@ class SearchReasoner:
             looks=belief.looks + 1,
         )
         seen = self._weighted(replace(seen, met=unexplained(seen)), possible)
+        seen = replace(seen, belied=np.maximum(seen.belied, _belied(seen, frame.camera)))
         heat = poses.heat(seen.weights)
         picture = drawn_belief(frame.colour, detections.segments, heat, seen.objects, belief.target)
         return replace(seen, picture=picture)
@@ -157,9 +165,9 @@ class SearchReasoner:
         situation = self._situation(self.removed(belief, belief.target))
         return self._nearer_look(belief) or best_plan(situation, enough=self._enough)
 
-    def clear_way(self, belief: ShelfBelief, label: str) -> Move | None:
+    def clear_way(self, belief: ShelfBelief, label: str, wider_m: float = WIDER_M) -> Move | None:
         """See `ShelfReasoning`."""
-        return freeing_move(self._situation(belief, staying=label), label)
+        return freeing_move(self._situation(belief, staying=label), label, wider_m)
 
     def restore(self, belief: ShelfBelief) -> Move | None:
         """See `ShelfReasoning`."""
@@ -218,13 +226,14 @@ class SearchReasoner:
     def _uncovering(self, belief: ShelfBelief, found: SeenObject) -> Plan | None:
         """Return what shows enough of a thing that is seen; None where nothing short does."""
         others = self._situation(self.removed(belief, belief.target))
-        place_m = np.array([[found.box.x_m, found.box.y_m]])
+        places_m = _may_stand(found)
         situation = replace(
             others,
-            met=np.vstack([others.met, footprints([found.box])]),
+            met=np.vstack([others.met, footprints([found.sure])]),
             target_m=found.box.size_m,
-            places_m=place_m,
-            weights=np.ones(1),
+            places_m=places_m,
+            weights=np.full(len(places_m), 1.0 / len(places_m)),
+            belied=np.zeros(0),
         )
         plan = look_ahead(situation, grain=COARSE.showing(self._enough))
         return plan if plan is not None and plan.finds > LEAST_FOUND else None
@@ -262,7 +271,9 @@ class SearchReasoner:
             target_m=belief.target_m,
             places_m=belief.places_m,
             weights=belief.weights,
+            belied=belief.belied,
             been=belief.been,
+            before=belief.been,
             unseen_m=self._things(self._camera).places_m[belief.unseen],
             barred=tuple((one.label, one.sign) for one in belief.refusals if one.sign),
         )
@@ -350,6 +361,17 @@ def _stood(one: SeenObject, box: Box) -> SeenObject:
     return replace(one, box=box, sure=sure)
 
 
+def _may_stand(found: SeenObject) -> Floats:
+    """Return places of a thing, shape (K, 2): as far as its box is loose by the part that shows."""
+    spans_m = [
+        middle_m + np.linspace(-loose_m, loose_m, 1 + round(2.0 * loose_m / PLACE_M))
+        if loose_m > PLACE_M
+        else np.array([middle_m])
+        for middle_m, loose_m in zip((found.box.x_m, found.box.y_m), found.loose_m, strict=True)
+    ]
+    return np.stack(np.meshgrid(*spans_m, indexing="ij"), axis=-1).reshape(-1, 2)
+
+
 def _glimpsed(belief: ShelfBelief) -> Floats:
     """Return how likely each place is by a sight of the target from another side, shape (K,)."""
     found = belief.found
@@ -359,6 +381,17 @@ def _glimpsed(belief: ShelfBelief) -> Floats:
     near = np.exp(-0.5 * (apart_m / GLIMPSE_M) ** 2)
     mixed: Floats = found.certainty * near + (1.0 - found.certainty) * MISTAKEN
     return mixed
+
+
+def _belied(belief: ShelfBelief, camera: CameraModel) -> Floats:
+    """Return the share of its face that a target in each cell should show, and does not."""
+    shares, found = np.zeros(len(belief.places_m)), belief.found
+    if found is not None and found.number != OUT_OF_VIEW:
+        return shares
+    likely = belief.weights > UNLIKELY * belief.weights.max()
+    boxes = [one.box for one in belief.objects if one.label != belief.target]
+    shares[likely] = shares_shown(belief.places_m[likely], belief.target_m, boxes, camera)
+    return np.minimum(shares, BELIED)
 
 
 def free_cells_shape(width_m: float, depth_m: float) -> tuple[int, int]:

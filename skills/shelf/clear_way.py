@@ -8,6 +8,7 @@ from executive.core.work import Worker
 from perception.shelf.beliefs import ShelfBelief
 from perception.shelf.interfaces import ShelfReasoning, object_of
 from perception.shelf.planning.moves import Place, Push
+from perception.shelf.planning.room import WIDER_M
 from skills.shelf.tool_skill import NOT_SEEN, unseen
 
 
@@ -30,11 +31,15 @@ class ClearWay(Skill):
         self,
         belief: Annotated[ShelfBelief, In("what is known of the shelf")],
         label: Annotated[str, In("name of the object that is to come out")],
+        wider_m: Annotated[
+            float,
+            In("how much wider its way is taken to be where nothing seems to stand in it", "m"),
+        ] = WIDER_M,
     ) -> SkillRun:
         """Plan."""
         if object_of(belief, label) is None:
             return unseen(label, belief)
-        move = yield from self._worker.run(self._search.clear_way, belief, label)
+        move = yield from self._worker.run(self._search.clear_way, belief, label, wider_m)
         if move is None:
             return failure("way.none", f"nothing can be moved from before {label}", label=label)
         return success(move=move)

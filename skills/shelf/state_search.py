@@ -6,6 +6,9 @@ from executive.core.outcome import success
 from executive.core.skill import In, Port, Skill, SkillRun
 from perception.shelf.beliefs import SearchClaim
 
+# What a probability is said to.
+DECIMALS = 4
+
 
 class StateSearch(Skill):
     """Say whether the target was found and taken out.
@@ -24,4 +27,4 @@ class StateSearch(Skill):
     ) -> SkillRun:
         """State it."""
         yield from ()
-        return success(claim=SearchClaim(target, found, retrieved, certainty))
+        return success(claim=SearchClaim(target, found, retrieved, round(certainty, DECIMALS)))

@@ -15,6 +15,8 @@ from perception.shelf.types import Bools
 
 # What was met this close to where it would touch an object now still stops that object.
 TOUCHING_M = 0.004
+# Where nothing else helps, ends of pushes and places are tried so closely.
+FINE_STEPS_M = (0.015, 0.02, 0.03)
 
 
 def best_plan(situation: Situation, depth: Depth | None = None, enough: float = 0.0) -> Plan | None:
@@ -37,7 +39,9 @@ def best_plan(situation: Situation, depth: Depth | None = None, enough: float = 
             return plan
     if not situation.reach.suction and hopeless(situation):
         return None
-    return rough or look_ahead(forgetful(situation), depth)
+    again = next((plan for plan in _tried_again(situation, depth) if plan is not None), None)
+    # What has failed where nothing has changed since comes last of all.
+    return rough or again or look_ahead(replace(forgetful(situation), barred=()), depth)
 
 
 def _other_plans(situation: Situation, depth: Depth | None, enough: float) -> Iterator[Plan | None]:
@@ -48,13 +52,19 @@ def _other_plans(situation: Situation, depth: Depth | None, enough: float) -> It
     if unseen is not None:
         plan = look_ahead(unseen, depth)
         yield None if plan is None else replace(plan, shows=0.0)
-    # Where all has been tried, it is tried again: the shelf has changed meanwhile.
-    yield look_ahead(forgetful(situation), depth)
+    yield from _tried_again(situation, depth)
+
+
+def _tried_again(situation: Situation, depth: Depth | None) -> Iterator[Plan | None]:
+    """Yield plans of what has been tried, since the shelf has changed; then of finer moves."""
+    again = forgetful(situation)
+    yield look_ahead(again, depth)
+    yield look_ahead(again, replace(depth or Depth(), steps_m=FINE_STEPS_M))
 
 
 def forgetful(situation: Situation) -> Situation:
-    """Return a situation without what was tried, but for what is still blocked as it was."""
-    return replace(situation, been=(), barred=(), met=situation.met[_touching(situation)])
+    """Return a situation without where things have been, and but for what still blocks them."""
+    return replace(situation, been=(), met=situation.met[_touching(situation)])
 
 
 def _touching(situation: Situation) -> Bools:

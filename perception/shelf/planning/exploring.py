@@ -37,7 +37,8 @@ def unseen_things(situation: Situation) -> Situation | None:
     if not len(places_m):
         return None
     weights = np.where(_near(places_m, situation.met), MET, 1.0)
-    return replace(situation, target_m=CORE_M, places_m=places_m, weights=weights / weights.sum())
+    weights, none = weights / weights.sum(), np.zeros(0)
+    return replace(situation, target_m=CORE_M, places_m=places_m, weights=weights, belied=none)
 
 
 def _near(places_m: Floats, met: Floats) -> Bools:

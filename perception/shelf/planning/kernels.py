@@ -331,13 +331,11 @@ def _assess(
     start: Ints,
     shows: Floats,
     weights: Floats,
-    seen: Ints,
 ) -> tuple[float, float]:
     """Return the weight of the poses that show, and the effort that it takes to see the others."""
     shown = behind = 0.0
     costs, faces = np.empty(near.shape[1]), np.empty(near.shape[1])
     for cell in range(len(weights)):
-        seen[cell] = 0
         if weights[cell] <= 0.0:
             continue
         visible, count = 0.0, 0
@@ -357,7 +355,6 @@ def _assess(
             costs[count], faces[count] = cost, top[entry] - foot
             count += 1
         if visible >= shows[cell]:
-            seen[cell] = 1
             shown += weights[cell]
         else:
             least = _least_effort(costs, faces, count, shows[cell])
@@ -366,45 +363,41 @@ def _assess(
 
 
 @kernel
-def assess(
+def rising(
     boxes: Floats,
-    movable: Ints,
-    met: Floats,
-    width_m: float,
-    reach: Floats,
     slopes: Floats,
     eye: Floats,
     column: Ints,
     depth: Floats,
     top: Floats,
     start: Ints,
-    shows: Floats,
     weights: Floats,
-) -> tuple[Ints, float, float]:
-    """Return which poses show, their weight, and the effort to see the others.
+) -> Floats:
+    """Return by how much each pose of a target rises above what is before it, shape (K,).
 
     Args:
         boxes: All objects, shape (B, 6).
-        movable: See `moves_from`.
-        met: The same.
-        width_m: Width of the shelf.
-        reach: See `moves_from`.
         slopes: Direction of each column, x over depth, shape (C,).
         eye: Position of the camera, shape (3,).
         column: Column of each entry; an entry is a column of the target in one of its poses.
         depth: Depth of the target there.
         top: Its elevation there.
         start: First entry of each pose, and the end of the last, shape (K + 1,).
-        shows: By how much a pose must rise above what is before it to be seen, shape (K,).
-        weights: Probability of each pose, shape (K,).
+        weights: Probability of each pose, shape (K,); what has none is left out.
     """
     near, rise = survey(boxes, slopes, eye)
-    effort = _effort(boxes, movable, met, width_m, reach)
-    seen = np.zeros(len(weights), np.int64)
-    shown, behind = _assess(
-        near, rise, effort, eye, column, depth, top, start, shows, weights, seen
-    )
-    return seen, shown, behind
+    rises = np.zeros(len(weights))
+    for cell in range(len(weights)):
+        if weights[cell] <= 0.0:
+            continue
+        for entry in range(start[cell], start[cell + 1]):
+            at, highest = column[entry], -eye[2] / depth[entry]
+            for index in range(len(near)):
+                if near[index, at] < depth[entry] and rise[index, at] > highest:
+                    highest = rise[index, at]
+            if highest < top[entry]:
+                rises[cell] += top[entry] - highest
+    return rises
 
 
 @kernel
@@ -447,11 +440,28 @@ def consider(
     moved: Ints,
     corners: Floats,
 ) -> tuple[Floats, Floats]:
-    """Assess every move on its own: weight shown, effort left, shape (M,) each; see `assess`."""
+    """Assess every move on its own: weight shown, and effort to see the rest, shape (M,) each.
+
+    Args:
+        boxes: All objects, shape (B, 6).
+        movable: See `moves_from`.
+        met: The same.
+        width_m: Width of the shelf.
+        reach: See `moves_from`.
+        slopes: See `rising`.
+        eye: The same.
+        column: The same.
+        depth: The same.
+        top: The same.
+        start: The same.
+        shows: By how much a pose must rise above what is before it to be seen, shape (K,).
+        weights: Probability of each pose, shape (K,).
+        moved: Which object each move moves, shape (M,).
+        corners: Where its low corner goes, shape (M, 2).
+    """
     near, rise = survey(boxes, slopes, eye)
     after = boxes.copy()
     shown, behind = np.empty(len(moved)), np.empty(len(moved))
-    seen = np.zeros(len(weights), np.int64)
     for number in range(len(moved)):
         index = moved[number]
         for one in range(len(boxes)):
@@ -462,7 +472,7 @@ def consider(
                 _survey_one(after[one], slopes, eye, near[one], rise[one])
         effort = _effort(after, movable, met, width_m, reach)
         shown[number], behind[number] = _assess(
-            near, rise, effort, eye, column, depth, top, start, shows, weights, seen
+            near, rise, effort, eye, column, depth, top, start, shows, weights
         )
         for one in range(len(boxes)):
             if one == index or _stands_on(boxes[one], boxes[index]):

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from perception.camera import CameraModel
-from perception.shelf.planning.kernels import Ints, assess, consider, moved_rows, moves_from
+from perception.shelf.planning.kernels import Ints, consider, moved_rows, moves_from, rising
 from perception.shelf.planning.lifting import tries
 from perception.shelf.planning.moves import Move, Place, Plan, Push
 from perception.shelf.planning.outlook import COARSE, Grain, outlook, restricted
@@ -24,6 +24,8 @@ from perception.shelf.types import Bools, Box, Floats, Shelf, Size, stands_on
 FIXED, ANYHOW, BY_PUSH, BY_CUP, UNSEEN = range(5)
 # An object this close to where it has been is back there.
 BACK_M = 0.015
+# Objects that are all this close to where they were together stand as they stood.
+SAME_M = 0.004
 # Poses that are less likely together than this are not planned for.
 REST = 0.02
 # Of two moves that are as good, the shorter one: a metre costs this part of a move.
@@ -32,6 +34,8 @@ HASTE_1_M = 1e-3
 PARTED, WEIGHED = 40, 80
 # A plan that makes no more moves for a find needs no parting, which is of two moves or more.
 EASY = 2.0
+# A pose that should show this share of its face, and does not, is not where the target stands.
+MOST_SHOWN = 0.8
 # What finds less of the target's probability finds nothing.
 LEAST_FOUND = 1e-3
 # So many children of a branch compete for each place in the beam.
@@ -76,9 +80,13 @@ class Situation:
         places_m: Where its centre may be, shape (K, 2).
         weights: Probability of each place, shape (K,).
         been: Where objects were moved from, or could not be moved to: none is brought there.
+        before: The same of all moves so far, in order: no arrangement that showed nothing is made
+            again.
         unseen_m: Where a small thing may stand that nobody has seen, shape (U, 2).
         barred: Objects that cannot be pushed from where they stand, and to which side: +1 for
             along x, -1 for against it.
+        belied: Share of its face by which a target in each place should have shown in some look,
+            and did not, shape (K,); empty where that is not known.
     """
 
     shelf: Shelf
@@ -94,8 +102,10 @@ class Situation:
     places_m: Floats
     weights: Floats
     been: Sequence[tuple[str, Box]] = ()
+    before: Sequence[tuple[str, Box]] = ()
     unseen_m: Floats = field(default_factory=lambda: np.zeros((0, 2)))
     barred: Sequence[tuple[str, int]] = ()
+    belied: Floats = field(default_factory=lambda: np.zeros(0))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -203,7 +213,27 @@ def open_moves(situation: Situation, boxes: Floats, moves: tuple[Ints, Ints, Flo
             pushes = (moved == number) & (by_cup == 0)
             stays = abs(boxes[number, 0] - situation.boxes[number].low_m[0]) < BACK_M
             fine &= ~(pushes & (sign * (corners[:, 0] - boxes[number, 0]) > 0.0) & stays)
-    return fine
+    return fine & ~_again(situation, boxes, moved, corners)
+
+
+def _again(situation: Situation, boxes: Floats, moved: Ints, corners: Floats) -> Bools:
+    """Say which moves bring all objects back to where they were together, shape (M,)."""
+    past_m = _arrangements(situation)
+    near: Bools = np.asarray((np.abs(boxes[:, :2] - past_m) < SAME_M).all(axis=2))
+    others = near.sum(axis=1)[:, None] - near[:, moved] == len(boxes) - 1
+    there = (np.abs(corners - past_m[:, moved]) < SAME_M).all(axis=2)
+    return np.asarray((others & there).any(axis=0))
+
+
+def _arrangements(situation: Situation) -> Floats:
+    """Return the low corners of all objects before each of the moves, shape (J, B, 2)."""
+    now_m, past_m = footprints(situation.boxes)[:, :2], list[Floats]()
+    numbers = {label: number for number, label in enumerate(situation.labels)}
+    for label, box in reversed(situation.before):
+        if label in numbers:
+            now_m[numbers[label]] = box.low_m[:2]
+            past_m.append(now_m.copy())
+    return np.array(past_m).reshape(-1, len(now_m), 2)
 
 
 class _Search:
@@ -218,7 +248,8 @@ class _Search:
         poses, weights = _blocks(situation, depth.block_m)
         places_m = situation.places_m[poses]
         self._view = outlook(situation.camera, places_m, situation.target_m, grain)
-        weights = self._hidden(weights)
+        belied = situation.belied[poses] if len(situation.belied) else np.zeros(len(poses))
+        weights = self._hidden(weights, belied, grain)
         kept = _likely(weights) if weights.any() else np.zeros(0, dtype=np.int64)
         self._places_m = places_m[kept]
         self._view = restricted(self._view, kept)
@@ -296,25 +327,34 @@ class _Search:
         for index, corner in pushes:
             cost = branch.spent
             longer = self._child(branch, (index, False, corner), 0.0, cost)
-            seen, shown, _ = self._assess(longer.boxes, longer.weights)
+            seen, shown = self._assess(longer.boxes, longer.weights)
             unfound = max(branch.unfound - shown, 0.0)
             branch = replace(
                 longer,
-                weights=np.where(seen == 1, 0.0, longer.weights),
+                weights=np.where(seen, 0.0, longer.weights),
                 unfound=unfound,
                 spent=branch.spent + unfound,
                 shows=(*branch.shows, shown),
             )
         return branch if branch.unfound < 1.0 - LEAST_FOUND else None
 
-    def _hidden(self, weights: Floats) -> Floats:
-        """Return the weights of the poses that do not show already, by a hair of their block.
+    def _hidden(self, weights: Floats, belied: Floats, grain: Grain) -> Floats:
+        """Return the weights of the poses that are not in view.
 
-        Where that leaves none, what is believed is wrong somewhere: anything hidden may be it.
+        What should show already, or should have shown before, and did not, is hidden by a hair:
+        places are known to some millimetres, and a pose stands for its block. To be seen, more of
+        it must show than that. Where all should be in view, what is believed is wrong somewhere:
+        anything hidden may be it.
         """
-        seen, _, _ = self._assess(self._inputs.boxes, np.ones(len(weights)))
-        hidden = np.where(seen == 1, 0.0, weights)
-        return hidden if hidden.sum() > 0.0 else np.where(seen == 1, 0.0, 1.0)
+        shows = self._view.shows
+        face, rises = shows / grain.shown, self._rises(self._inputs.boxes, np.ones(len(weights)))
+        now, before = rises >= shows, belied >= grain.shown
+        more = np.maximum(np.where(now, rises / face, 0.0), np.where(before, belied, 0.0))
+        self._view = replace(
+            self._view, shows=np.maximum(shows, (more + grain.more * (more > 0.0)) * face)
+        )
+        hidden = np.where(now & (rises > MOST_SHOWN * face), 0.0, weights)
+        return hidden if hidden.sum() > 0.0 else np.where(now, 0.0, 1.0)
 
     def _children(self, branch: _Branch) -> list[_Branch]:
         """Return the branch with each of the best next moves, not yet carried out."""
@@ -365,17 +405,21 @@ class _Search:
 
     def _carried_out(self, branch: _Branch) -> _Branch:
         """Return a branch with the poses ruled out that its last move shows."""
-        seen, _, _ = self._assess(branch.boxes, branch.weights)
-        return replace(branch, weights=np.where(seen == 1, 0.0, branch.weights))
+        seen, _ = self._assess(branch.boxes, branch.weights)
+        return replace(branch, weights=np.where(seen, 0.0, branch.weights))
 
-    def _assess(self, boxes: Floats, weights: Floats) -> tuple[Ints, float, float]:
-        view, inputs = self._view, self._inputs
-        answer: tuple[Ints, float, float] = assess(
-            boxes, self._situation.movable, inputs.met, inputs.shelf_m[0], inputs.reach,
-            view.slopes, view.eye, view.column, view.depth, view.top, view.start, view.shows,
-            weights,
-        )  # fmt: skip
-        return answer
+    def _assess(self, boxes: Floats, weights: Floats) -> tuple[Bools, float]:
+        """Return which poses show that weigh anything, and their weight."""
+        rises = self._rises(boxes, weights)
+        seen: Bools = (weights > 0.0) & (rises >= self._view.shows)
+        return seen, float(weights[seen].sum())
+
+    def _rises(self, boxes: Floats, weights: Floats) -> Floats:
+        """Return by how much each pose rises above what is before it, where it weighs anything."""
+        view = self._view
+        return rising(
+            boxes, view.slopes, view.eye, view.column, view.depth, view.top, view.start, weights
+        )
 
 
 def _plan(branch: _Branch | None) -> Plan | None:

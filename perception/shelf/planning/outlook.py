@@ -1,12 +1,13 @@
 """Where a hidden target would show: its poses as columns of an image, for looking ahead."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from perception.camera import CameraModel
-from perception.shelf.planning.kernels import Ints, survey
-from perception.shelf.types import Floats, Size
+from perception.shelf.planning.kernels import Ints, rising, survey
+from perception.shelf.types import Box, Floats, Size, corners
 
 # So much more of a target is to show than is asked for: places are known to some millimetres.
 MARGIN = 0.03
@@ -21,12 +22,14 @@ class Grain:
         shown: A pose counts as seen when it rises above what is before it by this share of its own
             face. More than the thesis's 1 %: poses stand for their neighbours, and places are known
             to some millimetres.
+        more: By this share of its face a pose must rise higher that should show and does not.
         clear_m: What is pushed aside leaves so much on its side of a line of sight.
         sight: Such a line ends at this share of the target's height.
     """
 
     columns: int = 96
     shown: float = 0.04
+    more: float = 0.04
     clear_m: float = 0.008
     sight: float = 0.8
 
@@ -38,7 +41,7 @@ class Grain:
 # Finer columns cost time and change no decision where there is room.
 COARSE = Grain()
 # Where there is little room, a slit of a pixel is worth a try.
-FINE = Grain(columns=0, shown=0.012, clear_m=0.0025, sight=0.88)
+FINE = Grain(columns=0, shown=0.012, more=0.012, clear_m=0.0025, sight=0.88)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -101,3 +104,25 @@ def restricted(whole: Outlook, poses: Ints) -> Outlook:
         whole.eye, whole.slopes, whole.column[entries], whole.depth[entries], whole.top[entries],
         start, whole.shows[poses],
     )  # fmt: skip
+
+
+def shares_shown(
+    places_m: Floats, target_m: Size, boxes: Sequence[Box], camera: CameraModel
+) -> Floats:
+    """Return how much of its face a target would show in each place, shape (K,).
+
+    Args:
+        places_m: Where its centre may be, shape (K, 2).
+        target_m: Its size.
+        boxes: What may hide it.
+        camera: See `outlook`.
+    """
+    view = outlook(camera, places_m, target_m)
+    lows_m, highs_m = corners(tuple(boxes))
+    rows = np.hstack([lows_m[:, :2], highs_m])
+    rises = rising(
+        rows, view.slopes, view.eye, view.column, view.depth, view.top, view.start,
+        np.ones(len(places_m)),
+    )  # fmt: skip
+    shares: Floats = rises * COARSE.shown / view.shows
+    return shares

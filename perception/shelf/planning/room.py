@@ -12,6 +12,8 @@ import numpy as np
 
 from perception.shelf.types import TOUCH_M, Bools, Box, Floats, Shelf
 
+# Places are known to some millimetres: by how much what stands beside a way may be in it.
+WIDER_M = 0.02
 # Somewhere before the shelf.
 OUTSIDE_M = -1.0
 

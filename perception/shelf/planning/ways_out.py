@@ -18,14 +18,14 @@ from perception.shelf.planning.looking_ahead import (
     open_moves,
 )
 from perception.shelf.planning.moves import Move
-from perception.shelf.planning.room import footprints, front_lane, overlapping
+from perception.shelf.planning.room import WIDER_M, footprints, front_lane, overlapping
 from perception.shelf.types import Bools, Floats
 
 # Of two sequences that clear as much, the shorter one: what a metre and what a move count beside
 # a metre of blocked lane.
 HASTE, MOVE = 1e-3, 1e-3
 # By how much an object may stand elsewhere than where it was seen, to be tried one by one.
-MARGINS_M = (0.0, 0.008, 0.02)
+MARGINS_M = (0.0, 0.008, WIDER_M)
 # Longest sequence, and how many of each length are gone on with.
 LONGEST, BEAM = 3, 60
 # A lane is clear when so little of it is blocked [m].
@@ -46,18 +46,19 @@ class _Sequence:
         return self.spent + self.blocked_m
 
 
-def freeing_move(situation: Situation, label: str) -> Move | None:
+def freeing_move(situation: Situation, label: str, wider_m: float = WIDER_M) -> Move | None:
     """Return the first move of the best sequence that clears the way of an object.
 
     Args:
         situation: What is known; the object itself is not to be movable.
         label: The object that is to come out straight.
+        wider_m: How much wider its lane is taken to be at most where nothing seems to block it.
 
     Returns:
         The move, or None when nothing stands in front, or no move helps.
     """
     rows = footprints(list(situation.boxes))
-    lane, blocked = _blocked(rows, situation.labels.index(label))
+    lane, blocked = _blocked(rows, situation.labels.index(label), wider_m)
     if not blocked.any():
         return None
     inputs = kernel_inputs(situation)
@@ -104,13 +105,13 @@ def _children(
         )
 
 
-def _blocked(rows: Floats, own: int) -> tuple[Floats, Bools]:
+def _blocked(rows: Floats, own: int, wider_m: float) -> tuple[Floats, Bools]:
     """Return the lane that has to be free, and which objects stand in it.
 
     Where none seems to, the lane is taken to be wider: places are known to some millimetres.
     """
     lane, blocked = front_lane(rows[own]), np.zeros(len(rows), dtype=bool)
-    for margin_m in MARGINS_M:
+    for margin_m in (margin_m for margin_m in MARGINS_M if margin_m <= wider_m):
         wider = lane + margin_m * np.array([-1.0, 0.0, 1.0, 0.0])
         blocked = overlapping(wider, rows)
         blocked[own] = False
