@@ -39,7 +39,7 @@ BENCHMARKS = {
     "untangle": ("benchmarks.untangle", "the untangling mission by tier and policy: Table 4.2"),
 }
 # Benchmarks that take options besides; a wrong one is answered with all of them.
-WITH_OPTIONS = {"faults", "shelf-cell", "untangle"}
+WITH_OPTIONS = {"faults", "search", "shelf-cell", "untangle"}
 
 
 def main() -> None:
