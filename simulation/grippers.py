@@ -2,11 +2,10 @@
 
 import math
 
-from robots.descriptions.yumi import CAGE_OPENING_M, FINGER_SPEED_M_S, FINGER_STROKE_M
+from robots.descriptions.yumi import CAGE_OPENING_M, FINGER_SPEED_M_S, OPEN_OPENING_M
 from robots.interfaces import Arm, Grip
 from simulation.cable.rod import Rod
 
-OPEN_M = 2.0 * FINGER_STROKE_M
 _SLACK_M = 0.0006  # closed fingers leave the cable to its grasp instead of pressing on it
 
 # The space between the fingers: how deep inside the hand, and how wide, a cable counts.
@@ -25,7 +24,7 @@ class Gripper:
         """Begin open; the rod must know the hand by the arm's name."""
         self._arm, self._rod = arm, rod
         self._grip: Grip = "open"
-        self.opening_m = OPEN_M
+        self.opening_m = OPEN_OPENING_M
 
     @property
     def strands(self) -> int:
@@ -66,7 +65,7 @@ class Gripper:
     def _target_m(self) -> float:
         """Return where the fingers are going: shut, or as close as what they hold lets them."""
         if self._grip == "open":
-            return OPEN_M
+            return OPEN_OPENING_M
         diameter_m = 2.0 * self._rod.parameters.radius_m
         taken_m = self.strands * diameter_m + _SLACK_M if self.strands else 0.0
         return taken_m if self._grip == "pinch" else max(CAGE_OPENING_M, taken_m)

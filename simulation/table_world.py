@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robots.descriptions import DESCRIPTIONS
+from robots.descriptions.yumi import OPEN_OPENING_M
 from robots.interfaces import ARMS
 from robots.limits import yumi_limits
 from robots.placement import HOME_RAD, YUMI_AT_TABLE, Placement
@@ -15,7 +16,6 @@ from simulation.cable.parameters import RodParameters
 from simulation.cable.rod import Rod
 from simulation.cable.rod_state import RodState
 from simulation.cable_obstacles import CableObstacles
-from simulation.grippers import OPEN_M
 from simulation.yumi_body import YumiBody
 
 Floats = NDArray[np.float64]
@@ -73,7 +73,7 @@ class TableWorld:
         self.step_s = 1.0 / step_hz
         self.rod = Rod(nodes_m, parameters)
         self.robot = DESCRIPTIONS["yumi"]()
-        self.body = YumiBody(HOME_RAD, dict.fromkeys(ARMS, OPEN_M), self.step_s, placement)
+        self.body = YumiBody(HOME_RAD, dict.fromkeys(ARMS, OPEN_OPENING_M), self.step_s, placement)
         self._obstacles = CableObstacles.of(self.robot)
         self._obstacles.follow(self.body, self.rod)
         self.driver = SimArmsDriver(self.body, self.rod, self.now_s, yumi_limits())

@@ -18,7 +18,10 @@ TCP_FROM_GRIPPER_BASE_M = 0.130
 REACH_M = 0.807
 # How far the hand gets from each joint's axis, rounded up; the last turns only the hand.
 LEVERS_M = (0.74, 0.71, 0.50, 0.45, 0.21, 0.18, 0.04)
-FINGER_STROKE_M = 0.025  # of each finger; the opening between them is twice that
+FINGER_STROKE_M = 0.025  # of each finger
+# How far apart the fingers of an open hand are: a grasp may be 1 cm off, and strands that lie
+# beside the one that is wanted stay outside.
+OPEN_OPENING_M = 0.03
 FINGER_SPEED_M_S = 0.025
 CAGE_OPENING_M = 0.011  # a ring that the cable slides through and its plug does not
 _CAPSULE_ALLOWANCE_M = 0.001  # the fits let mesh vertices stick out by up to 0.61 mm

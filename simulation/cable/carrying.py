@@ -12,8 +12,10 @@ from simulation.cable.rod import Rod
 Floats = NDArray[np.float64]
 
 SPEED_M_S, STEP_S, LIFT_M = 0.25, 0.01, 0.03
-# What lies between open fingers, their depth and width.
-FINGERS_M = (0.03, 0.03, 0.02)
+# What lies between open fingers, their depth and width: the YuMi's.
+FINGERS_M = (0.03, 0.02, 0.008)
+# Two hands come nearer to each other by so much each before one of them opens.
+SLACK_M = 0.006
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -48,21 +50,22 @@ def carry(rod: Rod, parts: Sequence[Carried], longest_rest_s: float) -> bool:
     """
     hands = {f"hand {k}": part for k, part in enumerate(parts)}
     height_m = rod.parameters.radius_m
+    up_m = height_m + LIFT_M
+    places_m = {hand: part.from_m for hand, part in hands.items()}
     for hand, part in hands.items():
         rod.move_hand(hand, _tool(part, part.from_m, height_m))
     rod.advance(STEP_S)
     held = [rod.close_hand(hand, part.mode, *FINGERS_M) for hand, part in hands.items()]
-    up_m = height_m + LIFT_M
-    _move(rod, hands, (0.0, height_m), (0.0, up_m), LIFT_M)
-    way_m = max(float(np.linalg.norm(part.to_m - part.from_m)) for part in parts)
-    done = 0.0
+    _move(rod, hands, places_m, places_m, (height_m, up_m))
     for share in sorted({1.0, *(part.lets_go for part in parts)}):
-        _move(rod, hands, (done, up_m), (share, up_m), (share - done) * way_m)
+        ends_m = {hand: _on_way(part, share) for hand, part in hands.items()}
+        _move(rod, hands, places_m, ends_m, (up_m, up_m))
+        places_m = _nearer(ends_m)
+        _move(rod, hands, ends_m, places_m, (up_m, up_m))
         for hand in [hand for hand, part in hands.items() if part.lets_go <= share < 1.0]:
             rod.release_hand(hand)
             del hands[hand]
-        done = share
-    _move(rod, hands, (1.0, up_m), (1.0, height_m), LIFT_M)
+    _move(rod, hands, places_m, places_m, (up_m, height_m))
     for hand in hands:
         rod.release_hand(hand)
     began_s = rod.time_s
@@ -71,19 +74,36 @@ def carry(rod: Rod, parts: Sequence[Carried], longest_rest_s: float) -> bool:
     return all(held)
 
 
+def _on_way(part: Carried, share: float) -> Floats:
+    place_m: Floats = part.from_m + share * (part.to_m - part.from_m)
+    return place_m
+
+
+def _nearer(places_m: Mapping[str, Floats]) -> dict[str, Floats]:
+    """Return places of two hands a little nearer to each other: a taut cable is thrown."""
+    if len(places_m) != 2:
+        return dict(places_m)
+    (first, first_m), (second, second_m) = places_m.items()
+    gap_m = second_m - first_m
+    nearer_m = SLACK_M * gap_m / max(float(np.linalg.norm(gap_m)), 1e-9)
+    return {first: first_m + nearer_m, second: second_m - nearer_m}
+
+
 def _move(
     rod: Rod,
     hands: Mapping[str, Carried],
-    begin: tuple[float, float],
-    end: tuple[float, float],
-    way_m: float,
+    begin_m: Mapping[str, Floats],
+    end_m: Mapping[str, Floats],
+    heights_m: tuple[float, float],
 ) -> None:
-    """Move hands between two (share of the way, height) at a steady speed."""
+    """Move hands between places and heights at a steady speed, in step."""
+    ways_m = [float(np.linalg.norm(end_m[hand] - begin_m[hand])) for hand in hands]
+    way_m = max(*ways_m, 0.0, abs(heights_m[1] - heights_m[0]))
     steps = max(round(way_m / SPEED_M_S / STEP_S), 1)
-    for share_done in np.linspace(0.0, 1.0, steps + 1)[1:]:
-        along, height_m = (1.0 - share_done) * np.array(begin) + share_done * np.array(end)
+    for done in np.linspace(0.0, 1.0, steps + 1)[1:]:
+        height_m = (1.0 - done) * heights_m[0] + done * heights_m[1]
         for hand, part in hands.items():
-            place_m = part.from_m + along * (part.to_m - part.from_m)
+            place_m = (1.0 - done) * begin_m[hand] + done * end_m[hand]
             rod.move_hand(hand, _tool(part, place_m, height_m))
         rod.advance(STEP_S)
 

@@ -1,10 +1,9 @@
 """Fingers that close at their own speed, as far as what is between them lets them."""
 
-from robots.descriptions.yumi import CAGE_OPENING_M, FINGER_SPEED_M_S, FINGER_STROKE_M
+from robots.descriptions.yumi import CAGE_OPENING_M, FINGER_SPEED_M_S, OPEN_OPENING_M
 from robots.interfaces import Grip
 
-_OPEN_M = 2.0 * FINGER_STROKE_M
-_TARGETS_M: dict[Grip, float] = {"open": _OPEN_M, "cage": CAGE_OPENING_M, "pinch": 0.0}
+_TARGETS_M: dict[Grip, float] = {"open": OPEN_OPENING_M, "cage": CAGE_OPENING_M, "pinch": 0.0}
 
 
 class Fingers:
@@ -18,7 +17,7 @@ class Fingers:
         """Take the width of what is between the fingers, 0 for nothing."""
         self._between_m = between_m
         self._grip: Grip = "open"
-        self.opening_m = _OPEN_M
+        self.opening_m = OPEN_OPENING_M
 
     @property
     def moving(self) -> bool:

@@ -7,7 +7,7 @@ from cell_fakes import ArrivingArms, finished, frame, overhand
 from executive.core.work import InlineWorker
 from perception.cable.grasp_sites import cage_sites, pinch_sites
 from perception.cable.polyline import arc_lengths
-from skills.cable.dilate_knot import DilateKnot, _Grip, apart, unlike
+from skills.cable.dilate_knot import SLACK_M, DilateKnot, _Grip, apart, unlike
 from skills.cable.knot_sites import HANDS_APART_M, REACH_X_M, given_pairs, ranked_pairs
 from skills.cable.laying_out import Pull
 
@@ -64,9 +64,18 @@ def test_the_caging_hand_opens_before_a_plug_and_the_other_draws_the_end_out():
         pass
     opened = arms.log.index(("grip", "left", "open"))
     moves = [entry[1] for entry in arms.log[opened:] if entry[0] == "move"]
-    assert moves[0]["right"][:2] == pytest.approx(ends[1], abs=2e-3)
+    assert moves[0]["right"][:2] == pytest.approx(ends[1], abs=SLACK_M + 2e-3)
     assert all(move["left"] == moves[0]["left"] for move in moves)
     assert moves[-1]["right"][2] < moves[0]["right"][2]
+
+
+def test_hands_come_nearer_to_each_other_before_they_open():
+    arms = ArrivingArms()
+    finished(DilateKnot(arms, InlineWorker()), inputs(travel_m=0.2))
+    opens = arms.log.index(("grip", "left", "open"))
+    moves = [entry[1] for entry in arms.log[:opens] if entry[0] == "move"]
+    gaps = [np.linalg.norm(np.subtract(tools["left"], tools["right"])) for tools in moves]
+    assert max(gaps) - gaps[-1] == pytest.approx(2 * SLACK_M, abs=1e-4)
 
 
 def test_closing_on_nothing_is_a_miss_and_lets_go():
