@@ -9,7 +9,12 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 from executive.core.clock import Clock
 from executive.core.errors import DeviceError, RecordingError
 from executive.engine.recording.reader import Recording
-from robots.descriptions.yumi import CAGE_OPENING_M, OPEN_OPENING_M, arm_joint_names
+from robots.descriptions.yumi import (
+    CAGE_OPENING_M,
+    FINGER_STROKE_M,
+    OPEN_OPENING_M,
+    arm_joint_names,
+)
 from robots.drivers.samples import JOINTS
 from robots.interfaces import ARMS, Arm, ArmsState, Floats, Grip, Trajectory
 
@@ -20,7 +25,7 @@ _GRIPPER_NAMES = [f"{arm}_gripper" for arm in ARMS]
 _SAME_M, _SAME_S, _STILL_RAD_S = 2e-4, 1e-9, 1e-3
 # Of a recording in which nothing happens for longer, rest is to be shown as rest.
 _LONGEST_PERIOD_S = 1.0
-_EMPTY_M = np.array([0.0, CAGE_OPENING_M, OPEN_OPENING_M])
+_EMPTY_M = np.array([0.0, CAGE_OPENING_M, OPEN_OPENING_M, 2.0 * FINGER_STROKE_M])
 
 
 class _JointStates(BaseModel):

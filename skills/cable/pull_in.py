@@ -1,6 +1,7 @@
 """Pull in cable that leaves the view (the thesis's exposure move)."""
 
-from collections.abc import Iterable
+from collections.abc import Sequence
+from itertools import product
 from typing import Annotated
 
 import numpy as np
@@ -12,8 +13,9 @@ from perception.cable.types import Trace
 from perception.camera import CameraFrame
 from robots.interfaces import Floats, TcpGoal
 from robots.placement import TABLE_SIZE_M
+from skills.cable.carrying import CarrySkill
 from skills.cable.grasping import grasp_goal
-from skills.cable.pulling import PullSkill, ways_inwards
+from skills.cable.knot_sites import REACH_X_M, REACH_Y_M
 
 # How far back from the end of the trace to look for a place to hold, as a share of it.
 REACH_ARC = 0.25
@@ -23,10 +25,19 @@ EDGE_ARC = 0.02
 OWN_M = 0.1
 # Room beyond this on the way is as good as any [m], and ways are told apart by steps of this.
 ENOUGH_M, STEP_M = 0.06, 0.02
+# The end is to come to lie so far from the edge: what hangs draws at what was laid down.
+INSIDE_M = 0.05
+# Hands may go to places so far apart. Ways whose ends are nearer to each other are one, of which
+# the first few are tried, and then parts of the first for an arm that cannot make a whole one.
+GRID_M, ALIKE_M, MOST_WAYS = 0.05, 0.12, 5
+SHARES_OF_WAY = (0.6, 0.3)
 
 
-class PullIn(PullSkill):
+class PullIn(CarrySkill):
     """Grasp the cable near the end of its trace and pull it onto the table, where there is room.
+
+    What hangs over an edge slides back unless all of it comes up: the hand goes as far away from
+    that edge as the rest of the cable is long.
 
     SUCCESS: the cable was held, pulled and laid down.
     FAILURE: `grasp.unreachable` when no arm reaches the last quarter of the trace;
@@ -38,49 +49,70 @@ class PullIn(PullSkill):
         self,
         frame: Annotated[CameraFrame, In("overhead frame")],
         trace: Annotated[Trace, In("path of the cable")],
-        distance_m: Annotated[float, In("how far to pull", "m")] = 0.25,
+        length_m: Annotated[float, In("length of the cable; 0 where it is not known", "m")] = 0.0,
+        hidden_m: Annotated[float, In("length out of view, where not known", "m")] = 0.2,
     ) -> SkillRun:
         """Hold as near to the trace's end as an arm reaches, and pull past other cable."""
         sites = sites_between(trace, 1.0 - REACH_ARC, 1.0 - EDGE_ARC)[::-1]
         goals = [grasp_goal(frame, site.point_px, site.direction) for site in sites]
         line_m = frame.camera.on_plane(trace.points_px)[:, :2]
+        seen_m = float(arc_lengths(line_m)[-1])
+        out_m = max(length_m - seen_m, 0.0) if length_m > 0.0 else hidden_m
 
         def ways_m(goal: TcpGoal) -> list[Floats]:
-            ways = off_edge_first(ways_inwards(goal.position_m, distance_m), line_m[-1])
-            return free_first(ways, goal.position_m[:2], line_m)
+            return ways_from_edge(goal.position_m[:2], line_m, out_m)
 
         return (yield from self.carry(goals, ways_m))
 
 
-def off_edge_first(ways_m: Iterable[Floats], end_m: Floats) -> list[Floats]:
-    """Return ways, those first that lead farthest away from the edge that the cable leaves over.
+def ways_from_edge(from_m: Floats, line_m: Floats, out_m: float) -> list[Floats]:
+    """Return level ways of a hand that draw a cable in over an edge, the best first.
 
-    A way along that edge draws little of the cable in.
-
-    Args:
-        ways_m: Level displacements, shape (3,) each.
-        end_m: Where the cable leaves the table, shape (2,).
-    """
-    axis = int(np.argmin(0.5 * np.array(TABLE_SIZE_M) - np.abs(end_m)))
-    return sorted(ways_m, key=lambda way_m: float(np.sign(end_m[axis]) * way_m[axis]))
-
-
-def free_first(ways_m: list[Floats], from_m: Floats, line_m: Floats) -> list[Floats]:
-    """Return ways of one hand over the table, those first that keep off the rest of the cable.
+    The best bring all of it up; of these come those first that keep off the rest of the cable.
 
     Args:
-        ways_m: Level displacements, shape (3,) each, the best first where there is room for all.
         from_m: Where the hand takes hold, shape (2,).
-        line_m: The cable, shape (N, 2); what lies near the hand along it comes along.
+        line_m: The cable, up to where it leaves the table, shape (N, 2).
+        out_m: How much of it is beyond that.
+
+    Returns:
+        Ways, shape (3,) each; last come parts of the best one, for arms that cannot make a whole.
     """
     arcs_m = arc_lengths(line_m)
+    held_m = float(arcs_m[int(np.linalg.norm(line_m - from_m, axis=1).argmin())])
+    needed_m = float(arcs_m[-1]) - held_m + out_m + INSIDE_M
+
+    def cost(way_m: Floats) -> tuple[int, int, float]:
+        short_m = max(needed_m - _inwards_m(from_m + way_m[:2], line_m[-1]), 0.0)
+        crowding = _crowding(way_m, from_m, line_m)
+        return round(short_m / STEP_M), crowding, float(np.linalg.norm(way_m))
+
+    places = product(np.arange(-REACH_X_M, REACH_X_M + 1e-9, GRID_M), np.arange(*REACH_Y_M, GRID_M))
+    ways_m = [np.array([x - from_m[0], y - from_m[1], 0.0]) for x, y in places]
+    whole = _unlike(sorted(ways_m, key=cost))[:MOST_WAYS]
+    return whole + [share * whole[0] for share in SHARES_OF_WAY]
+
+
+def _inwards_m(place_m: Floats, edge_m: Floats) -> float:
+    """Return how far a place is from the edge at which the cable leaves, square to it."""
+    axis = int(np.argmin(0.5 * np.array(TABLE_SIZE_M) - np.abs(edge_m)))
+    return float(np.sign(edge_m[axis]) * (edge_m[axis] - place_m[axis]))
+
+
+def _crowding(way_m: Floats, from_m: Floats, line_m: Floats) -> int:
+    """Return how near a hand comes on its way to cable that does not come along, in steps."""
+    arcs_m = arc_lengths(line_m)
     held_m = arcs_m[int(np.linalg.norm(line_m - from_m, axis=1).argmin())]
-    shares = np.linspace(0.2, 1.0, 9)[:, None]
+    path_m = from_m + np.linspace(0.2, 1.0, 9)[:, None] * way_m[:2]
+    resting_m = line_m[arcs_m < held_m - float(np.linalg.norm(way_m)) - OWN_M]
+    gaps_m = np.linalg.norm(path_m[:, None] - resting_m[None], axis=2)
+    return -int(min(float(gaps_m.min(initial=ENOUGH_M)), ENOUGH_M) / STEP_M)
 
-    def crowding(way_m: Floats) -> int:
-        path_m = from_m + shares * way_m[:2]
-        resting_m = line_m[arcs_m < held_m - float(np.linalg.norm(way_m)) - OWN_M]
-        gaps_m = np.linalg.norm(path_m[:, None] - resting_m[None], axis=2)
-        return -int(min(float(gaps_m.min(initial=ENOUGH_M)), ENOUGH_M) / STEP_M)
 
-    return sorted(ways_m, key=crowding)
+def _unlike(ways_m: Sequence[Floats]) -> list[Floats]:
+    """Return those ways that do not lead near to where an earlier one leads."""
+    kept = list[Floats]()
+    for way_m in ways_m:
+        if all(np.linalg.norm(way_m - other) > ALIKE_M for other in kept):
+            kept.append(way_m)
+    return kept

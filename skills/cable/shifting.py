@@ -12,6 +12,7 @@ from perception.cable.interfaces import CableVision
 from perception.cable.types import Points
 from perception.camera import CameraFrame
 from robots.interfaces import DualArm, Floats, TcpGoal
+from robots.placement import TABLE_SIZE_M
 from skills.cable.carrying import CarrySkill
 from skills.cable.grasping import grasp_goal
 
@@ -111,8 +112,21 @@ def roomiest_steps(
     steps_m = np.zeros((DRAWS, 3))
     steps_m[:, :2] = rng.uniform(-half_m, half_m, (DRAWS, 2))
     here_m = frame.camera.on_plane(leading_px)
-    rooms_px = [
-        min(room_px(place) for place in frame.camera.project(here_m + step_m)) for step_m in steps_m
-    ]
+
+    def least_px(places_m: Floats) -> float:
+        rim_px = rim_room_px(frame, places_m)
+        return min(rim_px, *(room_px(place) for place in frame.camera.project(places_m)))
+
+    rooms_px = [least_px(here_m + step_m) for step_m in steps_m]
     order = np.argsort([-room for room in rooms_px], kind="stable")
     return [steps_m[number] for number in order[:MOST_STEPS]]
+
+
+def rim_room_px(frame: CameraFrame, places_m: Floats) -> float:
+    """Return how far places are from the rim of the table, in pixels; negative beyond it.
+
+    What is laid down near the rim slides over it.
+    """
+    rim_m = float((0.5 * np.array(TABLE_SIZE_M) - np.abs(places_m[:, :2])).min())
+    ends_px = frame.camera.project(np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]]))
+    return rim_m * float(np.linalg.norm(ends_px[1] - ends_px[0]))

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from executive.core.errors import DeviceError
-from robots.descriptions.yumi import FINGER_SPEED_M_S
+from robots.descriptions.yumi import FINGER_SPEED_M_S, OPEN_OPENING_M
 from robots.interfaces import ARMS, ArmsDriver
 from robots.limits import yumi_limits
 from robots.motion.timing import rest_to_rest
@@ -134,7 +134,7 @@ def test_begins_at_rest_with_open_hands(driver):
     assert not driver.held()
     assert state.positions_rad == pytest.approx(HOME_RAD, abs=1e-6)
     assert state.velocities_rad_s == pytest.approx(np.zeros(14), abs=1e-6)
-    assert state.openings_m == pytest.approx(dict.fromkeys(ARMS, 0.05), abs=1e-6)
+    assert state.openings_m == pytest.approx(dict.fromkeys(ARMS, OPEN_OPENING_M), abs=1e-6)
     assert not any(driver.holds(arm) or driver.gripping(arm) for arm in ARMS)
 
 
@@ -364,7 +364,7 @@ def test_fingers_take_their_time_and_say_so(rig, driver, arm):
     assert openings_m[-1] == pytest.approx(0.0, abs=1e-4)
     assert not driver.holds(arm)
     other = next(name for name in ARMS if name != arm)
-    assert driver.state().openings_m[other] == pytest.approx(0.05, abs=1e-6)
+    assert driver.state().openings_m[other] == pytest.approx(OPEN_OPENING_M, abs=1e-6)
 
 
 def test_fingers_that_close_open_again(rig, driver):
@@ -372,7 +372,7 @@ def test_fingers_that_close_open_again(rig, driver):
     pass_time(rig, 0.2)
     driver.grip("left", "open")
     states_while(rig, lambda: driver.gripping("left"))
-    assert driver.state().openings_m["left"] == pytest.approx(0.05, abs=1e-4)
+    assert driver.state().openings_m["left"] == pytest.approx(OPEN_OPENING_M, abs=1e-4)
     assert not driver.holds("left")
 
 

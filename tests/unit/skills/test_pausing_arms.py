@@ -85,6 +85,6 @@ def test_plans_are_never_made_in_the_step_that_asks_for_them():
 
     trace, crossings, knot = overhand()
     inputs = {"frame": frame(), "trace": trace, "crossings": crossings, "knots": (knot,)}
-    assert finished(DilateKnot(arms, Elsewhere()), inputs, 100_000)[0].status is Status.SUCCESS
+    assert finished(DilateKnot(arms, Elsewhere()), inputs, 10_000_000)[0].status is Status.SUCCESS
     moves = [entry for entry in arms.log if entry[0] == "move"]
     assert len(steps) == len(moves) + 1  # and the choice of sites

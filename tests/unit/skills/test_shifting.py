@@ -44,6 +44,14 @@ def test_an_end_out_of_reach_is_said_to_be():
     assert outcome.reason.code == "grasp.unreachable"
 
 
+def test_an_end_near_the_rim_of_the_table_is_not_shifted_towards_it():
+    cable = np.zeros((751, 1001), dtype=bool)
+    end_px = np.array([[70.0, 375.0]])
+    hold = Hold(end_px[0] + [25.0, 0.0], np.array([1.0, 0.0]), end_px)
+    step_m = roomiest_steps(frame(), end_px, room_map(cable, hold), np.random.default_rng(0))[0]
+    assert step_m[0] > 0.0
+
+
 def test_a_blocked_shift_is_tried_less_far():
     arms = ArrivingArms()
     skill = PerturbEndpoint(arms, InlineWorker(), BlindVision(), np.random.default_rng(3))

@@ -135,7 +135,7 @@ def test_a_gap_waits_for_what_is_missing_and_nothing_is_done_twice():
     session.send(GripCommand(number=1, arm="left", grip="pinch"))
     assert session.run(2.0).openings_m[0] == pytest.approx(0.011)
     session.send(GripCommand(number=2, arm="left", grip="open"))
-    assert session.run(2.0).openings_m == (0.05, 0.05)
+    assert session.run(2.0).openings_m == (0.03, 0.03)
 
 
 @pytest.mark.parametrize("stop", [Stop(number=3), EmergencyStop(number=3)])
