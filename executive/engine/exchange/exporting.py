@@ -296,6 +296,8 @@ class _Export:
             raise InputError(
                 "delay_s has no counterpart there; try a sequence of the child after a wait"
             )
+        if model.gives_up_on:
+            raise InputError("gives_up_on has no counterpart there; try fewer times")
         self._note(node, _IN_ONE_TICK)
         times = times_text(model.times)
         return XmlElement("RetryUntilSuccessful", {"num_attempts": times}, self._children(node))

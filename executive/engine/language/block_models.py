@@ -8,6 +8,7 @@ from pydantic import Field, GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic_core import PydanticCustomError, core_schema
 
 from executive.engine.language.fields import (
+    Code,
     Count,
     Delay,
     ExpressionText,
@@ -132,6 +133,9 @@ class RetryBody(DecoratorBody):
     delay_s: Delay | Formula = Field(0.0, description="Pause after a failure [s].")
     backoff: Annotated[float, Field(strict=True, ge=1.0, allow_inf_nan=False)] = Field(
         1.0, description="Factor by which the pause grows with every failure."
+    )
+    gives_up_on: tuple[Code, ...] = Field(
+        (), description="Reasons of a failure after which there is no other attempt."
     )
 
 

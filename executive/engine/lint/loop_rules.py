@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 
 from executive.engine.language.block_models import CooldownBody, RetryBody, TimeoutBody
+from executive.engine.language.node_models import FailNode
 from executive.engine.language.outline import NodeSpec
 from executive.engine.lint.findings import Rule, Spot
 from executive.engine.lint.outcomes import number, traits
@@ -36,6 +37,20 @@ def _without_effect(subject: Subject) -> Iterator[Spot]:
         elif what.ignores and above and traits(above[-1]).ignores:
             message = f"{above[-1].model.kind} above it ignores the answer"
             yield Spot(node, f"{message}; drop one of the two")
+        if isinstance(node.model, RetryBody):
+            for code in sorted(set(node.model.gives_up_on) - set(_reasons(subject, node))):
+                message = f"nothing below fails with {code!r}"
+                yield Spot(node, f"{message}; try another code, or leave it out", ("gives_up_on",))
+
+
+def _reasons(subject: Subject, node: NodeSpec) -> Iterator[str]:
+    """Yield the codes with which skills and `fail` nodes fail that are below a node."""
+    for child in subject.outcomes.below(node):
+        skill = subject.outcomes.skill(child)
+        yield from skill.REASONS if skill is not None else ()
+        if isinstance(child.model, FailNode):
+            yield child.model.fail
+        yield from _reasons(subject, child)
 
 
 def _late_timeout(subject: Subject) -> Iterator[Spot]:
@@ -130,7 +145,8 @@ UNREPEATABLE = Rule(
 WITHOUT_EFFECT = Rule(
     "L107",
     "decorator without effect",
-    "A retry of what never fails, a forced answer that is forced already.",
+    "A retry of what never fails, or that gives up on what does not happen; a forced answer that "
+    "is forced already.",
     _without_effect,
 )
 LATE_TIMEOUT = Rule(

@@ -120,6 +120,7 @@ def _retry(model: RetryBody, site: Site) -> Behaviour:
         times=times,
         delay_s=delay_s,
         backoff=model.backoff,
+        gives_up_on=model.gives_up_on,
         clock=site.clock,
     )
 

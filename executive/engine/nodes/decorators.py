@@ -5,11 +5,14 @@ Repeat know no delay, its Timeout reads the machine's clock and ticks the child 
 is late (trap e8), and its ForEach runs the child for an empty list (trap e9).
 """
 
+from collections.abc import Collection, Iterator
+
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
 from executive.core.clock import Clock
 from executive.core.errors import InputError
+from executive.core.outcome import Outcome
 from executive.engine.language.amounts import Number, number
 from executive.engine.language.scope import Scope, evaluate
 from executive.engine.language.values import Value
@@ -29,6 +32,7 @@ class Retry(Gated):
         times: Number,
         delay_s: Number = 0.0,
         backoff: float = 1.0,
+        gives_up_on: Collection[str] = (),
         clock: Clock,
     ) -> None:
         """Allow some attempts.
@@ -39,10 +43,12 @@ class Retry(Gated):
             times: Attempts in all.
             delay_s: Pause after the first failure [s].
             backoff: Factor by which the pause grows with every failure.
+            gives_up_on: Codes of reasons after which there is no other attempt.
             clock: What the pauses are measured on.
         """
         super().__init__(name, child)
         self._asked, self._backoff, self._clock = (times, delay_s), backoff, clock
+        self._gives_up_on = frozenset(gives_up_on)
         self._times, self._delay_s = 0.0, 0.0
         self._failures, self._resume_s = 0, 0.0
 
@@ -62,7 +68,8 @@ class Retry(Gated):
         self._failures += 1
         self._resume_s = self._clock.now_s() + self._delay_s
         self._delay_s *= self._backoff
-        return Status.FAILURE if self._failures >= self._times else Status.RUNNING
+        hopeless = not self._gives_up_on.isdisjoint(failure_codes(self.decorated))
+        return Status.FAILURE if hopeless or self._failures >= self._times else Status.RUNNING
 
 
 class Repeat(Gated):
@@ -222,3 +229,14 @@ class ForEach(Gated):
         """Go on to the next item when the child has succeeded."""
         done = self.decorated.status is Status.SUCCESS
         return Status.RUNNING if done and self._left else self.decorated.status
+
+
+def failure_codes(node: Behaviour) -> Iterator[str]:
+    """Yield the codes of the reasons for which a node has just failed."""
+    if node.status is not Status.FAILURE:
+        return
+    outcome = getattr(node, "outcome", None)
+    if isinstance(outcome, Outcome) and outcome.reason is not None:
+        yield outcome.reason.code
+    for child in node.children:
+        yield from failure_codes(child)

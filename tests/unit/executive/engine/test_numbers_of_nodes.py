@@ -57,6 +57,26 @@ def test_pauses_grow_by_the_backoff(bench):
     assert bench.tree.root.status.value == "FAILURE"
 
 
+@pytest.mark.parametrize(("code", "attempts"), [("door.gone", 1), ("door.stuck", 4)])
+def test_a_retry_gives_up_on_reasons_that_no_attempt_mends(bench, code, attempts):
+    """A failure that a selector has answered for is none, though its reason is the same."""
+    bench.build(
+        f"""
+        retry:
+          times: 4
+          gives_up_on: [door.gone]
+          child:
+            sequence:
+              children:
+                - selector:
+                    children: [{{fail: door.gone}}, {{skill: work, in: {{label: a}}}}]
+                - {{fail: {code}}}
+        """
+    )
+    assert bench.tick(attempts) == ["RUNNING"] * (attempts - 1) + ["FAILURE"]
+    assert starts(bench) == attempts
+
+
 def test_repeat_pauses_between_rounds(bench):
     bench.build("repeat: {times: 2, delay_s: 0.25, child: {skill: work, in: {label: a}}}")
     assert bench.tick(4) == ["RUNNING", "RUNNING", "RUNNING", "SUCCESS"]
