@@ -43,6 +43,10 @@ TAIL_COST, LEFT_COST, BESIDE_COST = 20.0, 4.0, 0.15
 OFF_COST = 1.0
 # A plug does not pass through a cage: so much before it is there, that hand lets the cable go.
 PLUG_M = 0.04
+# A strand that passes so near to where a hand takes hold may come between its fingers too.
+FINGERS_M = 0.018
+# It pulls at least so much of the way before it lets go.
+LEAST_SHARE = 0.1
 # A tail is out when so much more has been drawn: connectors, and cable that was not quite straight.
 MARGIN_M = 0.06
 BESIDE_M = 0.02
@@ -91,15 +95,20 @@ class Pull:
 
         Where the hands pull on against a plug, it is torn out of them, and the cable flies.
         """
-        if not self.slides(ends):
-            return 1.0
-        shares = np.linspace(0.0, 1.0, 51)[:, None]
+        shares = np.linspace(LEAST_SHARE, 1.0, 46)[:, None]
         hands_m = point_at(
             self.line_m, arc_lengths(self.line_m), np.array([self.cage_m, self.pinch_m])
         )
         between_m = (1.0 - shares) * (hands_m[1] - hands_m[0]) + shares * (ends[1] - ends[0])
-        taut = np.linalg.norm(between_m, axis=1) >= self.pinch_m - PLUG_M
+        taut = np.linalg.norm(between_m, axis=1) >= self._held_m(hands_m[1]) - PLUG_M
         return float(shares[np.argmax(taut), 0]) if taut.any() else 1.0
+
+    def _held_m(self, pinch_m: Floats) -> float:
+        """Return the length from the start to the first strand that the second hand may hold."""
+        arcs_m = arc_lengths(self.line_m)
+        near = np.linalg.norm(self.line_m - pinch_m, axis=1) < FINGERS_M
+        beyond_m = arcs_m[near & (arcs_m > self.cage_m + FINGERS_M)]
+        return float(min(beyond_m.min(initial=np.inf), self.pinch_m))
 
     def hands(self, ends: Ends) -> tuple[ImaginedHand, ImaginedHand]:
         """Return what both hands do that go to these places."""

@@ -11,6 +11,7 @@ from perception.cable.polyline import arc_lengths
 from skills.cable.dilate_knot import DilateKnot
 from skills.cable.knot_sites import REACH_X_M, REACH_Y_M, deeper_pairs
 from skills.cable.laying_out import (
+    FINGERS_M,
     PLUG_M,
     Pull,
     best_places,
@@ -59,6 +60,16 @@ def test_a_caging_hand_opens_before_the_plug_comes_to_it_and_only_then():
     assert 0.0 < share < 1.0
     assert np.linalg.norm(at_m[1] - at_m[0]) == pytest.approx(0.3 - PLUG_M, abs=0.02)
     assert [hand.lets_go for hand in short.hands(ends)] == [share, 1.0]
+
+
+def test_a_caging_hand_opens_sooner_where_the_other_may_hold_an_earlier_strand_too():
+    """The cable comes back beside itself: fingers there close on 0.3 m and on 0.9 m of it."""
+    out_m, back_m = np.linspace((0.0, 0.0), (0.6, 0.0), 61), np.linspace((0.6, 0.01), (0, 0.01), 61)
+    pull = Pull(np.vstack([out_m, back_m]), 0.1, 0.91)
+    ends = np.array([-0.35, 0.0]), np.array([0.35, 0.0])
+    share = pull.lets_go(ends)
+    apart_m = 0.2 + share * (0.7 - 0.2)
+    assert apart_m == pytest.approx(0.3 - PLUG_M, abs=FINGERS_M + 0.02)
 
 
 def test_a_tail_that_was_let_go_lies_straight_behind_the_other_hand():
