@@ -35,6 +35,16 @@ def test_few_scenes_show_a_gap_even_where_beliefs_hold():
     assert many < 0.04
 
 
+def test_what_counts_as_even_holds_where_both_kinds_weigh_as_much():
+    # Of what is not read two of three cables are knotted, as of all; half is said of it.
+    trials = [Trial(0.5, k % 3 < 2, None) for k in range(3000)]
+    rows = _rows(trials)
+    assert rows["knotted_calibration_error"].value > 0.15
+    assert rows["knotted_calibration_error_even"].value < 0.12
+    only = _rows([Trial(0.9, True, None)] * 20)
+    assert "knotted_calibration_error_even" not in only
+
+
 def test_who_abstains_where_unsure_makes_no_errors():
     sure = [Trial(0.99, True, None)] * 40 + [Trial(0.01, False, None)] * 40
     unsure = [Trial(0.55, False, None)] * 20
