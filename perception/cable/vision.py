@@ -15,6 +15,7 @@ from perception.cable.eyes import LEAST_END, EndJudge
 from perception.cable.grasp_points import GraspConfig
 from perception.cable.interfaces import HypothesisTracer, TraceDoubter
 from perception.cable.knots import find_knots
+from perception.cable.left_over import doubt_left_over
 from perception.cable.parts import (
     CLASSIFIERS,
     EYES,
@@ -181,6 +182,19 @@ class GreyImageVision:
         if start_px is not None:
             ways = self._ways(image, start_px, endpoints)
             return [ways] if ways else []
+        cables = self._from_ends(image, endpoints)
+        shared = _shared_end(cables, endpoints)
+        if shared is not None:
+            # One cable ends there at most, so that one may be none.
+            rest = self._from_ends(image, tuple(end for end in endpoints if end is not shared))
+            cables = rest if any(_joins(ways[0]) for ways in rest) else cables
+        observation = self._eye.observe(self._seen(image))
+        return doubt_left_over(observation, cables) if observation is not None else cables
+
+    def _from_ends(
+        self, image: GreyImage, endpoints: Sequence[Endpoint]
+    ) -> list[tuple[Trace, ...]]:
+        """Return the ways to trace each cable from every end not come to."""
         cables: list[tuple[Trace, ...]] = []
         for endpoint in endpoints:
             if any(_accounts_for(ways[0], endpoint) for ways in cables if _is_believed(ways[0])):
@@ -238,6 +252,27 @@ def _length_px(trace: Trace) -> float:
 def _is_believed(trace: Trace) -> bool:
     """Say whether a trace is believed in enough not to ask from its other end as well."""
     return trace.probability >= BELIEVED
+
+
+def _joins(trace: Trace) -> bool:
+    """Say whether a trace is believed to lead from one end to another."""
+    return trace.end is TraceEnd.ENDPOINT and _is_believed(trace)
+
+
+def _shared_end(
+    cables: Sequence[tuple[Trace, ...]], endpoints: Sequence[Endpoint]
+) -> Endpoint | None:
+    """Return the least sure end that traces of two cables have come to, None without one.
+
+    A tight knot may be taken for an end, and the cable then comes there from both sides.
+    """
+    last_px = [ways[0].points_px[-1] for ways in cables if _joins(ways[0])]
+    shared = [
+        end
+        for end in endpoints
+        if sum(float(np.linalg.norm(at - end.position_px)) <= REACHED_PX for at in last_px) > 1
+    ]
+    return min(shared, key=lambda end: end.probability, default=None)
 
 
 def _are_one(trace: Trace, other: Trace) -> bool:

@@ -37,7 +37,7 @@ def wholeness(observation: Observation, path_px: Points) -> float:
     graph, cable = observation.graph, observation.mask.cable
     plugs = [graph.edges[number].points_px for number in sorted(graph.plugs)]
     if len(plugs) not in (1, 2):
-        cable = _pieces_along(cable, path_px)
+        cable = pieces_along(cable, path_px)
     low, high = SHARES
     share = coverage_of(cable, np.concatenate([path_px, *plugs])).share
     explained = float(np.clip((share - low) / (high - low), 0.0, 1.0))
@@ -48,20 +48,36 @@ def _no_hook(
     cable: NDArray[np.bool_], path_px: Points, plugs: Sequence[Points], width_px: float
 ) -> float:
     """Return the belief that no piece of cable beside a trace was cut short."""
-    aside = np.ones(cable.shape, np.uint8)
-    cv2.polylines(aside, [np.rint(path_px).astype(np.int32)], isClosed=False, color=(0,))
-    left = cable & (cv2.distanceTransform(aside, cv2.DIST_L2, 5) > BESIDE_WIDTHS * width_px)
-    spots = left.astype(np.uint8)
-    for end in np.concatenate([path_px[[0, -1]], *plugs]):
-        centre = (round(float(end[0])), round(float(end[1])))
-        cv2.circle(spots, centre, round(CONNECTOR_PX), (0,), thickness=-1)
+    spots = left_beside(cable, [path_px], plugs, width_px).astype(np.uint8)
     sizes = cv2.connectedComponentsWithStats(spots, connectivity=8)[2][1:, cv2.CC_STAT_AREA]
     largest = float(sizes.max(initial=0)) / width_px**2
     small, large = HOOK_WIDTHS2
     return float(np.clip((large - largest) / (large - small), 0.0, 1.0))
 
 
-def _pieces_along(cable: NDArray[np.bool_], path_px: Points) -> NDArray[np.bool_]:
+def left_beside(
+    cable: NDArray[np.bool_], paths_px: Sequence[Points], plugs: Sequence[Points], width_px: float
+) -> NDArray[np.bool_]:
+    """Return the pixels of cable beside all paths, but for those at ends and at connectors.
+
+    Args:
+        cable: Which pixels show cable, shape (height, width).
+        paths_px: Centre lines of traces.
+        plugs: Centre lines of connectors.
+        width_px: Width of the cables.
+    """
+    aside = np.ones(cable.shape, np.uint8)
+    lines = [np.rint(path_px).astype(np.int32) for path_px in paths_px]
+    cv2.polylines(aside, lines, isClosed=False, color=(0,))
+    left = cable & (cv2.distanceTransform(aside, cv2.DIST_L2, 5) > BESIDE_WIDTHS * width_px)
+    spots = left.astype(np.uint8)
+    for end in np.concatenate([*(path_px[[0, -1]] for path_px in paths_px), *plugs]):
+        centre = (round(float(end[0])), round(float(end[1])))
+        cv2.circle(spots, centre, round(CONNECTOR_PX), (0,), thickness=-1)
+    return spots.astype(bool)
+
+
+def pieces_along(cable: NDArray[np.bool_], path_px: Points) -> NDArray[np.bool_]:
     """Return the connected pieces of the mask that a path runs over."""
     labels = np.asarray(cv2.connectedComponents(cable.astype(np.uint8))[1])
     return np.isin(labels, np.unique(labels[pixels_of(path_px, cable.shape)])) & cable
