@@ -4,13 +4,10 @@ import math
 
 from robots.descriptions.yumi import CAGE_OPENING_M, FINGER_SPEED_M_S, OPEN_OPENING_M
 from robots.interfaces import Arm, Grip
+from simulation.cable.hands import DEPTH_M, WIDTH_M
 from simulation.cable.rod import Rod
 
 _SLACK_M = 0.0006  # closed fingers leave the cable to its grasp instead of pressing on it
-
-# The space between the fingers: how deep inside the hand, and how wide, a cable counts.
-_DEPTH_M = 0.020
-_WIDTH_M = 0.008
 
 
 class Gripper:
@@ -50,7 +47,7 @@ class Gripper:
         self._rod.release_hand(self._arm)
         self._grip = grip
         if grip != "open":
-            self._rod.close_hand(self._arm, grip, self.opening_m, _DEPTH_M, _WIDTH_M)
+            self._rod.close_hand(self._arm, grip, self.opening_m, DEPTH_M, WIDTH_M)
 
     def advance(self, duration_s: float) -> None:
         """Move both fingers on, each at its own speed."""

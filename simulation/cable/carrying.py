@@ -6,14 +6,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from simulation.cable.hands import GraspMode
+from simulation.cable.hands import DEPTH_M, WIDTH_M, GraspMode
 from simulation.cable.rod import Rod
 
 Floats = NDArray[np.float64]
 
 SPEED_M_S, STEP_S, LIFT_M = 0.25, 0.01, 0.03
-# What lies between open fingers, their depth and width: the YuMi's.
-FINGERS_M = (0.03, 0.02, 0.008)
+# How far apart open fingers are, as the YuMi's.
+OPENING_M = 0.03
 # Two hands come nearer to each other by so much each before one of them opens.
 SLACK_M = 0.006
 
@@ -55,7 +55,9 @@ def carry(rod: Rod, parts: Sequence[Carried], longest_rest_s: float) -> bool:
     for hand, part in hands.items():
         rod.move_hand(hand, _tool(part, part.from_m, height_m))
     rod.advance(STEP_S)
-    held = [rod.close_hand(hand, part.mode, *FINGERS_M) for hand, part in hands.items()]
+    held = [
+        rod.close_hand(hand, part.mode, OPENING_M, DEPTH_M, WIDTH_M) for hand, part in hands.items()
+    ]
     _move(rod, hands, places_m, places_m, (height_m, up_m))
     for share in sorted({1.0, *(part.lets_go for part in parts)}):
         ends_m = {hand: _on_way(part, share) for hand, part in hands.items()}

@@ -14,6 +14,8 @@ GraspMode = Literal["pinch", "cage"]
 
 # Finger tips reach this far beyond the tool centre point.
 TIP_BEYOND_TCP_M = 0.006
+# The space between the fingers: how deep inside the hand, and how wide, a cable counts.
+DEPTH_M, WIDTH_M = 0.020, 0.008
 # Less cable than this between the fingers is not a grasp.
 SHORTEST_HOLD_M = 0.003
 # Fingers close at this speed, and bring the cable to their middle.
