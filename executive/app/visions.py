@@ -7,7 +7,7 @@ from typing import Literal
 
 from perception.cable.interfaces import CableVision, Tracer
 from perception.cable.selectable import SelectableVision
-from perception.cable.types import Endpoint, Points, Trace
+from perception.cable.types import Crossing, Endpoint, Points, Trace
 from perception.camera import GreyImage
 
 # The thesis's classifier of crossings, as `cellwright train` has kept it.
@@ -25,6 +25,16 @@ class _AboveRows:
         self, image: GreyImage, start_px: Points, endpoints: Sequence[Endpoint]
     ) -> Trace | None:
         return self.tracer.trace(image[: len(image) - self.hidden_rows], start_px, endpoints)
+
+
+@dataclass(frozen=True, slots=True)
+class _CrossingsOf:
+    """The classifier of crossings that a whole perception has."""
+
+    vision: CableVision
+
+    def classify(self, image: GreyImage, traces: Sequence[Trace]) -> tuple[Crossing, ...]:
+        return self.vision.crossings(image, traces)
 
 
 # Builds our own perception, with networks or without; for None with them where they can run.
@@ -46,6 +56,7 @@ def selectable_vision(own: Own, hidden_rows: int) -> SelectableVision:
         "tusk_uncancelled": partial(_tusk, own, hidden_rows, learned=True, cancel=False),
         "tusk_analytic": partial(_tusk, own, hidden_rows, learned=False, cancel=True),
         "sgtm2": partial(_sgtm2, own, hidden_rows),
+        "ruled": partial(_ruled, own),
     }
     return SelectableVision(known, "classic")
 
@@ -63,6 +74,14 @@ def _tusk(own: Own, hidden_rows: int, *, learned: bool, cancel: bool) -> CableVi
     tracer: Tracer = GreedyTracer(FOLDER / TRACER) if learned else AnalyticTracer()
     classifier = ThesisClassifier(FOLDER / THESIS_CLASSIFIER)
     return TuskVision(parts, _AboveRows(tracer, hidden_rows), classifier, TuskConfig(cancel))
+
+
+def _ruled(own: Own) -> CableVision:
+    """Build our own perception with the thesis's rule in the place of proofs."""
+    parts = own(None)
+    from perception.cable.baselines.tusk import TuskVision
+
+    return TuskVision(parts, parts, _CrossingsOf(parts))
 
 
 def _sgtm2(own: Own, hidden_rows: int) -> CableVision:

@@ -7,7 +7,7 @@ from executive.core.outcome import failure, success
 from executive.core.skill import In, Port, Skill, SkillRun
 from executive.core.work import Worker
 from perception.cable.selectable import SelectableVision
-from skills.cable.policies import POLICIES, ClaimBy, HoldAt, PolicyName, VisionName
+from skills.cable.policies import POLICIES, ClaimBy, HoldAt, Move, PolicyName, VisionName
 
 
 class ChoosePolicy(Skill):
@@ -21,8 +21,7 @@ class ChoosePolicy(Skill):
         "claim_by": Port(ClaimBy, "what a claim is made on"),
         "hold_at": Port(HoldAt, "where knots are held"),
         "plans": Port(bool, "whether pulls go to where the cable should lie best"),
-        "reveals": Port(bool, "whether cable that leaves the view is pulled in"),
-        "disambiguates": Port(bool, "whether cable is moved only to understand it"),
+        "moves": Port(list[Move], "what else it does than pull at knots"),
     }
     REASONS = frozenset({"vision.unavailable"})
 
@@ -45,6 +44,5 @@ class ChoosePolicy(Skill):
             claim_by=chosen.claim_by,
             hold_at=chosen.hold_at,
             plans=chosen.plans,
-            reveals=chosen.reveals,
-            disambiguates=chosen.disambiguates,
+            moves=[*chosen.moves],
         )

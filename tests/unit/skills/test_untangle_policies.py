@@ -173,7 +173,7 @@ def test_only_a_belief_needs_the_whole_cable_accounted_for():
 def test_cable_that_leaves_the_view_is_pulled_in_by_who_reveals(policy):
     looks = (replace(DONE, end=TraceEnd.EDGE, knotted=0.5), DONE)
     acts = flown(*looks, policy=policy)[1]
-    assert ("pull_in" in acts) == POLICIES[policy].reveals
+    assert ("pull_in" in acts) == ("expose" in POLICIES[policy].moves)
 
 
 def test_cable_that_slides_back_each_time_is_worked_on_as_it_is():
@@ -191,7 +191,7 @@ def test_sgtm2_ends_where_no_knot_is_in_sight_though_the_cable_leaves_the_view()
 def test_what_cannot_be_traced_is_loosened_by_who_disambiguates(policy):
     looks = (replace(KNOTTED, end=TraceEnd.RETRACE), DONE)
     acts = flown(*looks, policy=policy)[1]
-    assert acts[0] == ("partial_dilation" if POLICIES[policy].disambiguates else "dilate_knot")
+    assert acts[0] == ("partial_dilation" if "loosen" in POLICIES[policy].moves else "dilate_knot")
 
 
 def test_an_end_that_gives_no_start_is_freed_where_traces_need_one():
